@@ -1,0 +1,83 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planecloud_slam/frontend_node/frontend_options.h"
+#include "planecloud_slam/plane_fit/camera.h"
+#include "planecloud_slam/plane_fit/image_view.h"
+#include "planecloud_slam/plane_fit/keyframe.h"
+
+namespace planecloud_slam {
+
+/// One colour-depth pair in one camera, as it came from the sensor (not rectified).
+struct RgbdFrame {
+  double stamp = 0.0;          ///< of the depth image [s since the epoch]
+  Image<std::uint8_t> grey;    ///< width x height, 0..255
+  Image<float> depth;          ///< width x height, along the optical axis [m]; NaN: none
+};
+
+enum class TrackingStatus {
+  kInitialised,  ///< first frame of a segment: it is the reference
+  kTracked,
+  kLost,
+};
+
+/// What tracking says of one frame.
+struct FrameResult {
+  TrackingStatus status = TrackingStatus::kLost;
+  std::string reason;  ///< why it was lost, for people; empty otherwise
+  double stamp = 0.0;  ///< [s]
+  Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
+  /// Reference keyframe and the pose relative to it, so that trajectories move with the graph.
+  KeyframeId reference;
+  Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< of T_reference_camera
+};
+
+/// A keyframe whose tracking is over and whose depth waits to be fitted. Movable between threads.
+struct CompletedKeyframe {
+  Keyframe keyframe;   ///< all but the planes
+  Image<float> depth;  ///< [m], NaN: none; rectified, in `camera`
+  Image<std::uint8_t> grey;
+  CameraIntrinsics camera;
+};
+
+/// The tracking half of the frontend: DVO against the local map of one keyframe (paper sec. 3.1).
+/// No threads, no clock, no logging.
+class Frontend {
+ public:
+  /// Throws std::invalid_argument when `options` or `camera` fail their check.
+  Frontend(const FrontendOptions& options, const CameraIntrinsics& camera, std::string robot,
+           std::uint64_t session);
+  ~Frontend();
+  Frontend(Frontend&&) noexcept;
+  Frontend& operator=(Frontend&&) noexcept;
+
+  /// Tracks one frame. `T_reference_guess`, when given, is the motion since the previous frame from
+  /// elsewhere (wheel odometry): T_previous_current of the optical frame.
+  /// Throws std::invalid_argument when the frame's size is not the camera's.
+  [[nodiscard]] FrameResult track(const RgbdFrame& frame,
+                                  const std::optional<Eigen::Isometry3d>& T_previous_current = {});
+
+  /// Keyframes completed by the calls so far, oldest first; empties the list.
+  [[nodiscard]] std::vector<CompletedKeyframe> takeCompleted();
+
+  /// Completes the current keyframe (end of a recording, shutdown); the next frame opens a segment.
+  void finish();
+
+  /// Ends the segment: time went backwards or the camera changed. The open keyframe is completed.
+  void startNewSegment();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace planecloud_slam
