@@ -1,0 +1,115 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "planecloud_slam/plane_fit/option_fields.h"
+
+namespace planecloud_slam {
+
+/// How plane clouds are prepared for alignment.
+struct PlaneSetOptions {
+  int coarse_tile = 16;         ///< largest piece of a tile in the first stage [px], [4, 64]
+  int fine_tile = 8;            ///< largest piece of a tile in the second stage [px], [2, 64]
+  int min_tile = 3;             ///< tiles with a smaller side are left out [px], [1, 64]
+  double max_depth = 6.0;       ///< tiles beyond are left out [m], [0.5, 50]
+  double min_incidence = 0.12;  ///< least cosine between normal and ray [-], [0, 0.9]
+  /// Standard deviation of a pixel's depth divided by the depth squared [1/m], [1e-5, 0.1].
+  double depth_noise = 1.4e-3;
+  /// Pixels this far apart have independent depth errors [px], [1, 32].
+  double noise_correlation = 5.0;
+
+  template <typename Self, typename Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("coarse_tile", self.coarse_tile);
+    visit("fine_tile", self.fine_tile);
+    visit("min_tile", self.min_tile);
+    visit("max_depth", self.max_depth);
+    visit("min_incidence", self.min_incidence);
+    visit("depth_noise", self.depth_noise);
+    visit("noise_correlation", self.noise_correlation);
+  }
+  /// Throws std::invalid_argument naming key, value and range.
+  void check() const;
+};
+
+/// When a tile of one keyframe agrees with what another one saw.
+struct VisibilityOptions {
+  double depth_tolerance = 0.05;      ///< along the ray at 0 m [m], (0, 1]
+  double depth_tolerance_z2 = 0.006;  ///< added times the depth squared [1/m], [0, 0.1]
+  double normal_tolerance = 0.5;      ///< angle between agreeing normals [rad], (0, 1.6]
+
+  template <typename Self, typename Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("depth_tolerance", self.depth_tolerance);
+    visit("depth_tolerance_z2", self.depth_tolerance_z2);
+    visit("normal_tolerance", self.normal_tolerance);
+  }
+  /// Throws std::invalid_argument naming key, value and range.
+  void check() const;
+};
+
+enum class IcapForm {
+  kPaper,   ///< Algorithm 2 as printed: coefficient space, closed form, all planes equal
+  kRobust,  ///< distances at centroids, extents, noise weights, robust kernel, null directions
+};
+
+[[nodiscard]] std::string toString(IcapForm form);
+/// Throws std::invalid_argument naming the choices.
+void fromString(const std::string& text, IcapForm& form);
+
+/// Iterative Closest Algebraic Plane (paper sec. 3.4). Keys: `icap/...`.
+struct IcapOptions {
+  IcapForm form = IcapForm::kRobust;
+  int max_iterations = 30;        ///< all stages together, [1, 200]
+  int min_matches = 12;           ///< fewer: too_few_planes, [3, 10000]
+  int max_patches = 600;          ///< source pieces used in a stage, [16, 100000]
+  double initial_distance = 0.5;  ///< matching gate at the start [m], (0, 5]
+  double final_distance = 0.06;   ///< matching gate at the end [m], (0, 5]
+  double initial_angle = 0.87;    ///< matching gate of normals at the start [rad], (0, 3.2]
+  double final_angle = 0.21;      ///< matching gate of normals at the end [rad], (0, 3.2]
+  double normal_length = 0.3;     ///< makes a difference of unit normals a length [m], (0, 10]
+  double distance_floor = 0.004;  ///< least standard deviation of a plane distance [m], (0, 1]
+  double normal_floor = 0.02;     ///< least standard deviation of a normal [rad], (0, 1]
+  double kernel_width = 3.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
+  /// A direction is observed when its eigenvalue is this many times what the noise of the normals
+  /// alone would make [-], [1, 1000].
+  double observability = 4.0;
+  double max_correction = 1.5;  ///< a longer way from the guess is divergence [m], (0, 100]
+  double max_rotation = 0.8;    ///< a larger turn from the guess is divergence [rad], (0, 3.2]
+  /// Errors that do not average out (sensor distortion): the standard deviation no observed
+  /// direction goes below [m], [0, 1], and [rad], [0, 1].
+  double translation_floor = 0.01;
+  double rotation_floor = 0.005;
+  PlaneSetOptions planes;
+  VisibilityOptions visibility;
+
+  template <typename Self, typename Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("form", self.form);
+    visit("max_iterations", self.max_iterations);
+    visit("min_matches", self.min_matches);
+    visit("max_patches", self.max_patches);
+    visit("initial_distance", self.initial_distance);
+    visit("final_distance", self.final_distance);
+    visit("initial_angle", self.initial_angle);
+    visit("final_angle", self.final_angle);
+    visit("normal_length", self.normal_length);
+    visit("distance_floor", self.distance_floor);
+    visit("normal_floor", self.normal_floor);
+    visit("kernel_width", self.kernel_width);
+    visit("observability", self.observability);
+    visit("max_correction", self.max_correction);
+    visit("max_rotation", self.max_rotation);
+    visit("translation_floor", self.translation_floor);
+    visit("rotation_floor", self.rotation_floor);
+    PlaneSetOptions::fields(self.planes, visit);
+    VisibilityOptions::fields(self.visibility, visit);
+  }
+  /// Throws std::invalid_argument naming key, value and range.
+  void check() const;
+};
+
+}  // namespace planecloud_slam
