@@ -18,9 +18,9 @@ namespace planecloud_slam {
 
 /// One colour-depth pair in one camera, as it came from the sensor (not rectified).
 struct RgbdFrame {
-  double stamp = 0.0;          ///< of the depth image [s since the epoch]
-  Image<std::uint8_t> grey;    ///< width x height, 0..255
-  Image<float> depth;          ///< width x height, along the optical axis [m]; NaN: none
+  double stamp = 0.0;        ///< of the depth image [s since the epoch]
+  Image<std::uint8_t> grey;  ///< width x height, 0..255
+  Image<float> depth;        ///< width x height, along the optical axis [m]; NaN: none
 };
 
 enum class TrackingStatus {

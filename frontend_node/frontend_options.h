@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "planecloud_slam/frontend_node/dense_tracker_options.h"
+#include "planecloud_slam/frontend_node/keyframe_selector.h"
+#include "planecloud_slam/frontend_node/local_map.h"
+#include "planecloud_slam/frontend_node/loss_options.h"
+#include "planecloud_slam/plane_fit/option_fields.h"
+
+namespace planecloud_slam {
+
+/// Everything a frontend can be told; names as in ROS parameters and YAML files.
+struct FrontendOptions {
+  /// Remap images of a camera with lens distortion to the pinhole without it; false: track as if
+  /// there were no distortion. Without effect on cameras that have none.
+  bool undistort = true;
+  DenseTrackerOptions tracking;
+  KeyframeSelectorOptions keyframe;
+  LossOptions lost;
+  LocalMapOptions local_map;
+
+  template <typename Self, typename Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("undistort", self.undistort);
+    visitFields("tracking/", self.tracking, visit);
+    visitFields("keyframe/", self.keyframe, visit);
+    visitFields("lost/", self.lost, visit);
+    visitFields("local_map/", self.local_map, visit);
+  }
+
+  /// Throws std::invalid_argument naming key, value and range.
+  void check() const;
+};
+
+}  // namespace planecloud_slam

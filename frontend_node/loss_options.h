@@ -1,0 +1,40 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "planecloud_slam/plane_fit/option_fields.h"
+
+namespace planecloud_slam {
+
+/// What makes a track implausible. Loss is an outcome, not an error.
+struct LossOptions {
+  double min_valid_depth = 0.05;         ///< share of pixels with depth an image needs, [0, 1]
+  double min_contrast = 2.0;             ///< standard deviation of grey an image needs, [0, 128]
+  double min_overlap = 0.25;             ///< share of the reference's points seen again, [0, 1]
+  double min_inliers = 0.5;              ///< share of seen points that agree with the pose, [0, 1]
+  double max_depth_residual = 0.1;       ///< scale of inverse depth residuals [1/m], (0, 10]
+  double max_intensity_residual = 30.0;  ///< scale of grey residuals, (0, 255]
+  double min_entropy_ratio = 0.6;        ///< of `KeyframeSelector`, below it nothing holds, [0, 1]
+  double max_speed = 3.0;                ///< [m/s], [0.1, 100]
+  double max_turn_rate = 4.0;            ///< [rad/s], [0.1, 100]
+  double new_segment_after = 1.0;        ///< time lost before a new segment opens [s], [0, 3600]
+
+  template <typename Self, typename Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("min_valid_depth", self.min_valid_depth);
+    visit("min_contrast", self.min_contrast);
+    visit("min_overlap", self.min_overlap);
+    visit("min_inliers", self.min_inliers);
+    visit("max_depth_residual", self.max_depth_residual);
+    visit("max_intensity_residual", self.max_intensity_residual);
+    visit("min_entropy_ratio", self.min_entropy_ratio);
+    visit("max_speed", self.max_speed);
+    visit("max_turn_rate", self.max_turn_rate);
+    visit("new_segment_after", self.new_segment_after);
+  }
+
+  /// Throws std::invalid_argument naming key, value and range.
+  void check() const;
+};
+
+}  // namespace planecloud_slam
