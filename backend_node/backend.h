@@ -33,8 +33,8 @@ struct MapKeyframe {
   KeyframeId id;
   double stamp = 0.0;
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
-  std::shared_ptr<const Keyframe> keyframe;      ///< as received (encoded planes, texture)
-  std::shared_ptr<const PlaneCloud> planes;      ///< decoded
+  std::shared_ptr<const Keyframe> keyframe;  ///< as received (encoded planes, texture)
+  std::shared_ptr<const PlaneCloud> planes;  ///< decoded
 };
 
 /// The map at one moment, immutable: publishers read it while the backend goes on.
@@ -52,9 +52,9 @@ struct MapSnapshot {
 
 enum class InsertionStatus {
   kInserted,
-  kDuplicate,   ///< this id is already in the map: ignored
-  kRefused,     ///< malformed; `reason` says why. Nothing changed.
-  kNameClash,   ///< two running sessions of one robot name; `reason` names both. Nothing changed.
+  kDuplicate,  ///< this id is already in the map: ignored
+  kRefused,    ///< malformed; `reason` says why. Nothing changed.
+  kNameClash,  ///< two running sessions of one robot name; `reason` names both. Nothing changed.
 };
 
 /// What became of one keyframe.
