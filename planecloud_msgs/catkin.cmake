@@ -1,0 +1,49 @@
+# Copyright (c) 2026, the planecloud_slam authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Included at root scope by the root CMakeLists.txt: catkin's macros set variables there and must
+# come before the first target.
+
+set(PLANECLOUD_SLAM_CATKIN_DEPENDS
+  cv_bridge diagnostic_msgs geometry_msgs image_transport message_filters nav_msgs
+  rosbag roscpp sensor_msgs std_msgs std_srvs tf2 tf2_eigen tf2_msgs tf2_ros visualization_msgs)
+find_package(catkin REQUIRED COMPONENTS message_generation ${PLANECLOUD_SLAM_CATKIN_DEPENDS})
+
+catkin_destinations()
+
+# genmsg installs the whole of devel/include/planecloud_slam, the links to the component folders
+# included; installed links would lead back into the source. They go before (a folder from an
+# earlier installation stands in a link's way) and after, then headers.cmake installs the headers.
+macro(planecloud_slam_uninstall_component_folders)
+  foreach(component IN LISTS PLANECLOUD_SLAM_COMPONENTS)
+    install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CATKIN_PACKAGE_INCLUDE_DESTINATION}/${component}\")")
+  endforeach()
+endmacro()
+
+# rosmsg and rossrv look in msg/ and srv/ of the package or of share/planecloud_slam alone.
+add_message_files(DIRECTORY msg BASE_DIR ${PROJECT_SOURCE_DIR}/planecloud_msgs/msg
+  FILES
+    KeyframeAck.msg
+    KeyframeReference.msg
+    KeyframeSession.msg
+    PlaneCloud.msg
+    PlaneCloudKeyframe.msg
+    RelativePoseEdge.msg)
+add_service_files(DIRECTORY planecloud_msgs/srv NOINSTALL FILES ExportMap.srv)
+install(FILES planecloud_msgs/srv/ExportMap.srv
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/srv)
+foreach(kind msg srv)
+  file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/planecloud_msgs/${kind}
+       ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/${kind} SYMBOLIC)
+endforeach()
+
+planecloud_slam_uninstall_component_folders()
+generate_messages(DEPENDENCIES std_msgs)
+planecloud_slam_uninstall_component_folders()
+
+catkin_package(
+  INCLUDE_DIRS ${CATKIN_DEVEL_PREFIX}/include
+  LIBRARIES ${PROJECT_NAME}_conversions ${PROJECT_NAME}_icap ${PROJECT_NAME}_plane_fit
+  CATKIN_DEPENDS geometry_msgs message_runtime roscpp sensor_msgs std_msgs std_srvs
+  DEPENDS EIGEN3)
