@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "planecloud_slam/plane_fit/image_view.h"
 
@@ -32,6 +33,12 @@ struct CameraIntrinsics {
   }
   friend bool operator!=(const CameraIntrinsics& a, const CameraIntrinsics& b) { return !(a == b); }
 };
+
+/// The tangents (u, v) of the ray that image position (x, y) [px] sees, lens distortion undone
+/// (Newton's method on the Brown-Conrady model); empty where the model cannot be inverted. Plain
+/// IEEE arithmetic in a fixed order: the same bits on every machine.
+[[nodiscard]] std::optional<Eigen::Vector2d> tangentsAt(const CameraIntrinsics& intrinsics,
+                                                        double x, double y);
 
 /// Tangent tables of a camera: `u = (x + dx - cx) / fx`, `v = (y + dy - cy) / fy`, where (dx, dy)
 /// is the offset that undoes the lens distortion (paper sec. 3.3). Immutable, cheap to share.

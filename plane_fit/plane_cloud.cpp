@@ -1,0 +1,33 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/plane_fit/plane_cloud.h"
+
+#include <stdexcept>
+
+namespace planecloud_slam {
+
+Eigen::Vector4d PlanarTile::plane() const {
+  // q = alpha u + beta v + gamma times z: (alpha beta gamma) . p = 1, so d = 1 / norm and
+  // (a b c) = -d (alpha beta gamma) (paper eq. (3)).
+  const Eigen::Vector3d coefficients = inverse_depth.cast<double>();
+  const double d = 1.0 / coefficients.norm();
+  Eigen::Vector4d pi;
+  pi << -d * coefficients, d;
+  return pi;
+}
+
+std::string toString(PlaneCloudEncoding encoding) {
+  return encoding == PlaneCloudEncoding::kRaw ? "raw" : "compact";
+}
+
+void fromString(const std::string& text, PlaneCloudEncoding& encoding) {
+  if (text == "raw") {
+    encoding = PlaneCloudEncoding::kRaw;
+  } else if (text == "compact") {
+    encoding = PlaneCloudEncoding::kCompact;
+  } else {
+    throw std::invalid_argument("encoding '" + text + "': must be raw or compact");
+  }
+}
+
+}  // namespace planecloud_slam
