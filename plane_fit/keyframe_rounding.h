@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "planecloud_slam/plane_fit/camera.h"
+#include "planecloud_slam/plane_fit/keyframe.h"
+#include "planecloud_slam/plane_fit/se3.h"
+
+/// Keyframes travel in single precision. What rounding does to them is said here once, so that
+/// both halves in one process give what they give with a network between them.
+namespace planecloud_slam {
+
+/// Translation [m], then rotation vector [rad].
+using PackedPose = std::array<float, 6>;
+/// Upper triangle of a symmetric 6x6 matrix, row by row.
+using PackedInformation = std::array<float, 21>;
+
+[[nodiscard]] PackedPose packPose(const Eigen::Isometry3d& T);
+[[nodiscard]] Eigen::Isometry3d unpackPose(const PackedPose& packed);
+
+[[nodiscard]] PackedInformation packInformation(const Matrix6d& information);
+[[nodiscard]] Matrix6d unpackInformation(const PackedInformation& packed);
+
+/// Focal lengths, principal point and distortion in single precision.
+[[nodiscard]] CameraIntrinsics roundCamera(CameraIntrinsics camera);
+
+/// `stamp` [s], >= 0, in whole nanoseconds.
+[[nodiscard]] double roundStamp(double stamp);
+
+/// The keyframe as the other side receives it.
+[[nodiscard]] Keyframe asTravelled(Keyframe keyframe);
+
+}  // namespace planecloud_slam
