@@ -71,6 +71,8 @@ void FrontendOptions::check() const {
   keyframe.check();
   lost.check();
   local_map.check();
+  plane_fit.check();
+  codec.check();
 }
 
 }  // namespace planecloud_slam

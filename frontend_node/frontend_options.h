@@ -7,6 +7,8 @@
 #include "planecloud_slam/frontend_node/local_map.h"
 #include "planecloud_slam/frontend_node/loss_options.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
+#include "planecloud_slam/plane_fit/plane_cloud_codec.h"
+#include "planecloud_slam/plane_fit/quadtree_fitter.h"
 
 namespace planecloud_slam {
 
@@ -19,6 +21,8 @@ struct FrontendOptions {
   KeyframeSelectorOptions keyframe;
   LossOptions lost;
   LocalMapOptions local_map;
+  QuadtreeFitterOptions plane_fit;
+  CodecOptions codec;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -27,6 +31,8 @@ struct FrontendOptions {
     visitFields("keyframe/", self.keyframe, visit);
     visitFields("lost/", self.lost, visit);
     visitFields("local_map/", self.local_map, visit);
+    visitFields("plane_fit/", self.plane_fit, visit);
+    visitFields("codec/", self.codec, visit);
   }
 
   /// Throws std::invalid_argument naming key, value and range.
