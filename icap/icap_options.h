@@ -16,6 +16,7 @@ struct PlaneSetOptions {
   int min_tile = 3;             ///< tiles with a smaller side are left out [px], [1, 64]
   double max_depth = 6.0;       ///< tiles beyond are left out [m], [0.5, 50]
   double min_incidence = 0.12;  ///< least cosine between normal and ray [-], [0, 0.9]
+  double normal_length = 0.3;   ///< makes a difference of unit normals a length [m], (0, 10]
   /// Standard deviation of a pixel's depth divided by the depth squared [1/m], [1e-5, 0.1].
   double depth_noise = 1.4e-3;
   /// Pixels this far apart have independent depth errors [px], [1, 32].
@@ -28,6 +29,7 @@ struct PlaneSetOptions {
     visit("min_tile", self.min_tile);
     visit("max_depth", self.max_depth);
     visit("min_incidence", self.min_incidence);
+    visit("normal_length", self.normal_length);
     visit("depth_noise", self.depth_noise);
     visit("noise_correlation", self.noise_correlation);
   }
@@ -70,7 +72,6 @@ struct IcapOptions {
   double final_distance = 0.06;   ///< matching gate at the end [m], (0, 5]
   double initial_angle = 0.87;    ///< matching gate of normals at the start [rad], (0, 3.2]
   double final_angle = 0.21;      ///< matching gate of normals at the end [rad], (0, 3.2]
-  double normal_length = 0.3;     ///< makes a difference of unit normals a length [m], (0, 10]
   double distance_floor = 0.004;  ///< least standard deviation of a plane distance [m], (0, 1]
   double normal_floor = 0.02;     ///< least standard deviation of a normal [rad], (0, 1]
   double kernel_width = 3.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
@@ -96,7 +97,6 @@ struct IcapOptions {
     visit("final_distance", self.final_distance);
     visit("initial_angle", self.initial_angle);
     visit("final_angle", self.final_angle);
-    visit("normal_length", self.normal_length);
     visit("distance_floor", self.distance_floor);
     visit("normal_floor", self.normal_floor);
     visit("kernel_width", self.kernel_width);

@@ -14,6 +14,9 @@
 
 namespace planecloud_slam {
 
+template <int Dimension>
+class KdTree;
+
 /// A tile, or a piece of one, as alignment wants it. All in the keyframe's optical frame.
 struct PlanePatch {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, pointing at the camera
@@ -25,7 +28,6 @@ struct PlanePatch {
   double distance_sigma = 0.0;  ///< expected error of the plane at the centroid [m]
   double normal_sigma = 0.0;    ///< expected error of the normal, each direction [rad]
   TileRect rect;                ///< pixels it was seen through
-  int tile = 0;                 ///< index of its tile in the plane cloud
 };
 
 /// A plane cloud prepared for alignment: its tiles cut to two piece sizes, a search index over
@@ -40,10 +42,13 @@ class PlaneSet {
   PlaneSet();
 
   /// Tiles that are out of range, seen at a grazing angle or smaller than `min_tile` are left out
-  /// (PlaneSetOptions). Throws std::invalid_argument when `options` or the camera fail their check.
+  /// (PlaneSetOptions). Throws std::invalid_argument when `options` or the camera fail their check
+  /// or a tile lies outside the image.
   explicit PlaneSet(const PlaneCloud& cloud, const PlaneSetOptions& options = PlaneSetOptions());
 
   [[nodiscard]] const CameraIntrinsics& camera() const;
+  /// In an order that does not depend on the order of the tiles, spread over the image: the first
+  /// n patches are a fair sample of all.
   [[nodiscard]] const std::vector<PlanePatch>& patches(Level level) const;
   [[nodiscard]] bool empty() const { return patches(Level::kWhole).empty(); }
 
@@ -53,9 +58,12 @@ class PlaneSet {
   /// What a point with z > 0 projects to [px], lens distortion included.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& point) const;
 
-  struct Index;
-  /// Nearest-neighbour index over the centroids and normals of a level.
-  [[nodiscard]] const Index& index(Level level) const;
+  /// Search index over `matchingPoint` of each patch of a level, in their order.
+  [[nodiscard]] const KdTree<6>& index(Level level) const;
+
+  /// Centroid and normal as one point whose distances are lengths [m]: (c, normal_length n).
+  [[nodiscard]] Eigen::Matrix<float, 6, 1> matchingPoint(const Eigen::Vector3d& centroid,
+                                                         const Eigen::Vector3d& normal) const;
 
  private:
   struct Contents;

@@ -103,9 +103,13 @@ Camera::Camera(const CameraIntrinsics& intrinsics) : intrinsics_(intrinsics) {
   }
 }
 
+Eigen::Vector2d projectPoint(const CameraIntrinsics& intrinsics, const Eigen::Vector3d& point) {
+  const Distorted d = distort(intrinsics.distortion, point.x() / point.z(), point.y() / point.z());
+  return {intrinsics.fx * d.x + intrinsics.cx, intrinsics.fy * d.y + intrinsics.cy};
+}
+
 Eigen::Vector2d Camera::project(const Eigen::Vector3d& point) const {
-  const Distorted d = distort(intrinsics_.distortion, point.x() / point.z(), point.y() / point.z());
-  return {intrinsics_.fx * d.x + intrinsics_.cx, intrinsics_.fy * d.y + intrinsics_.cy};
+  return projectPoint(intrinsics_, point);
 }
 
 }  // namespace planecloud_slam

@@ -40,6 +40,10 @@ struct CameraIntrinsics {
 [[nodiscard]] std::optional<Eigen::Vector2d> tangentsAt(const CameraIntrinsics& intrinsics,
                                                         double x, double y);
 
+/// Pixel coordinates of a point of the optical frame with z > 0, lens distortion included.
+[[nodiscard]] Eigen::Vector2d projectPoint(const CameraIntrinsics& intrinsics,
+                                           const Eigen::Vector3d& point);
+
 /// Tangent tables of a camera: `u = (x + dx - cx) / fx`, `v = (y + dy - cy) / fy`, where (dx, dy)
 /// is the offset that undoes the lens distortion (paper sec. 3.3). Immutable, cheap to share.
 class Camera {

@@ -1,0 +1,196 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/icap/icap.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "planecloud_slam/icap/icap_paper.h"
+#include "planecloud_slam/icap/patch_matcher.h"
+#include "planecloud_slam/icap/plane_normal_equations.h"
+#include "planecloud_slam/icap/visibility.h"
+
+namespace planecloud_slam {
+namespace {
+
+constexpr double kGateShrink = 0.7;     // of the gates from one iteration to the next
+constexpr double kSettledStep = 2e-4;   // norm of a twist that counts as standing still [m, rad]
+constexpr double kRestlessStep = 2e-2;  // a last step beyond has not settled at all [m, rad]
+constexpr double kFineDistance = 0.12;  // gate at which the small pieces take over [m]
+// Errors of neighbouring pieces are alike (one tile, one disparity step, one lens), so that many
+// residuals say what one would; found by normalised errors on rendered and real pairs.
+constexpr double kCorrelatedResiduals = 20.0;
+
+/// The annealing of one alignment.
+struct Schedule {
+  MatchGates gates;
+  double kernel_width = 0.0;
+  bool last = false;  ///< the gates are at their final values
+};
+
+Schedule scheduleOf(int iteration, const IcapOptions& options) {
+  const double shrink = std::pow(kGateShrink, iteration);
+  Schedule schedule;
+  schedule.gates.distance = std::max(options.final_distance, options.initial_distance * shrink);
+  schedule.gates.angle = std::max(options.final_angle, options.initial_angle * shrink);
+  schedule.last = schedule.gates.distance <= options.final_distance &&
+                  schedule.gates.angle <= options.final_angle;
+  schedule.kernel_width = options.kernel_width * schedule.gates.distance / options.final_distance;
+  return schedule;
+}
+
+/// Where the iterations stand.
+struct Progress {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  std::vector<PatchMatch> matches;
+  PlaneNormalEquations system;
+  Observability observability;
+  double last_step = 0.0;
+  int iterations = 0;
+  bool enough = false;
+};
+
+void iterate(const PatchMatcher& matcher, const Schedule& schedule, const IcapOptions& options,
+             Progress& progress) {
+  progress.matches = matcher.match(progress.T_target_source, schedule.gates);
+  progress.enough = progress.matches.size() >= static_cast<std::size_t>(options.min_matches);
+  if (!progress.enough) return;
+  progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
+                                         schedule.kernel_width, options);
+  progress.observability = analyseObservability(progress.system, options.observability);
+  const Vector6d step = solveObserved(progress.system, progress.observability);
+  progress.T_target_source = progress.T_target_source * expSe3(step);
+  progress.last_step = step.norm();
+  ++progress.iterations;
+}
+
+Progress alignRobustly(const PlaneSet& target, const PlaneSet& source,
+                       const Eigen::Isometry3d& T_target_source_guess, const IcapOptions& options) {
+  const PatchMatcher coarse(target, source, PlaneSet::Level::kCoarse, options.max_patches);
+  const PatchMatcher fine(target, source, PlaneSet::Level::kFine, options.max_patches);
+  Progress progress;
+  progress.T_target_source = T_target_source_guess;
+  for (int i = 0; i < options.max_iterations; ++i) {
+    const Schedule schedule = scheduleOf(i, options);
+    iterate(schedule.gates.distance > kFineDistance ? coarse : fine, schedule, options, progress);
+    if (!progress.enough) break;
+    if (schedule.last && progress.last_step < kSettledStep) break;
+  }
+  return progress;
+}
+
+/// Information in the observed directions: correlated residuals count less, the unobserved part is
+/// marginalised out, and what does not average out bounds it from above.
+Matrix6d calibratedInformation(const Progress& progress, const IcapOptions& options) {
+  const Eigen::Matrix<double, 6, Eigen::Dynamic>& seen = progress.observability.observed;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic>& dark = progress.observability.unobserved;
+  if (seen.cols() == 0) return Matrix6d::Zero();
+  const Matrix6d& hessian = progress.system.hessian;
+  Eigen::MatrixXd reduced = seen.transpose() * hessian * seen;
+  if (dark.cols() > 0) {
+    const Eigen::MatrixXd cross = seen.transpose() * hessian * dark;
+    reduced -= cross * (dark.transpose() * hessian * dark).ldlt().solve(cross.transpose());
+  }
+  const double misfit = progress.system.weighted_error / std::max(1e-9, progress.system.weight);
+  Vector6d floor;
+  floor << Eigen::Vector3d::Constant(options.translation_floor * options.translation_floor),
+      Eigen::Vector3d::Constant(options.rotation_floor * options.rotation_floor);
+  const Eigen::MatrixXd covariance =
+      kCorrelatedResiduals * std::max(1.0, misfit) * reduced.inverse() +
+      seen.transpose() * Matrix6d(floor.asDiagonal()) * seen;
+  const Matrix6d information = seen * covariance.inverse() * seen.transpose();
+  return 0.5 * (information + information.transpose());
+}
+
+bool leftTheGuess(const Eigen::Isometry3d& T_target_source_guess, const Eigen::Isometry3d& T,
+                  const IcapOptions& options) {
+  const Eigen::Isometry3d correction = T_target_source_guess.inverse() * T;
+  return !(correction.translation().norm() <= options.max_correction &&
+           rotationAngle(correction) <= options.max_rotation);
+}
+
+IcapStatus statusOf(const Progress& progress, const Eigen::Isometry3d& T_target_source_guess,
+                    const IcapOptions& options) {
+  if (!progress.enough) return IcapStatus::kTooFewPlanes;
+  if (!(progress.last_step < kRestlessStep) ||
+      leftTheGuess(T_target_source_guess, progress.T_target_source, options)) {
+    return IcapStatus::kDiverged;
+  }
+  return progress.observability.unobserved.cols() > 0 ? IcapStatus::kDegenerate
+                                                      : IcapStatus::kConverged;
+}
+
+IcapResult describe(const PlaneSet& target, const PlaneSet& source, const Progress& progress,
+                    IcapStatus status, const IcapOptions& options) {
+  IcapResult result;
+  result.status = status;
+  result.iterations = progress.iterations;
+  result.T_target_source = progress.T_target_source;
+  if (status == IcapStatus::kTooFewPlanes) return result;
+  result.inliers = static_cast<int>(progress.matches.size());
+  result.rms_algebraic_error =
+      std::sqrt(progress.system.squared_distance / static_cast<double>(progress.matches.size()));
+  result.overlap =
+      checkVisibility(target, source, result.T_target_source, options.visibility).overlap();
+  if (status == IcapStatus::kDiverged) return result;
+  result.information = calibratedInformation(progress, options);
+  for (Eigen::Index i = 0; i < progress.observability.unobserved.cols(); ++i) {
+    result.unobserved.push_back(progress.observability.unobserved.col(i));
+  }
+  return result;
+}
+
+/// Algorithm 2 as printed, judged like the robust form.
+Progress alignPaperForm(const PlaneSet& target, const PlaneSet& source,
+                        const Eigen::Isometry3d& T_target_source_guess,
+                        const IcapOptions& options) {
+  Progress progress;
+  progress.T_target_source = T_target_source_guess;
+  const std::size_t least = static_cast<std::size_t>(options.min_matches);
+  if (target.patches(PlaneSet::Level::kWhole).size() < least ||
+      source.patches(PlaneSet::Level::kWhole).size() < least) {
+    return progress;
+  }
+  PaperAlignment aligned =
+      alignAsPrinted(target, source, T_target_source_guess, options.max_iterations);
+  progress.T_target_source = aligned.T_target_source;
+  progress.matches = std::move(aligned.matches);
+  progress.iterations = aligned.iterations;
+  progress.enough = true;
+  progress.last_step = aligned.settled ? 0.0 : kRestlessStep;
+  progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
+                                         options.kernel_width, options);
+  progress.observability = analyseObservability(progress.system, options.observability);
+  return progress;
+}
+
+}  // namespace
+
+std::string toString(IcapStatus status) {
+  switch (status) {
+    case IcapStatus::kConverged:
+      return "converged";
+    case IcapStatus::kDegenerate:
+      return "degenerate";
+    case IcapStatus::kTooFewPlanes:
+      return "too_few_planes";
+    case IcapStatus::kDiverged:
+      return "diverged";
+  }
+  throw std::invalid_argument("IcapStatus: not an enumerator");
+}
+
+IcapResult icap(const PlaneSet& target, const PlaneSet& source,
+                const Eigen::Isometry3d& T_target_source_guess, const IcapOptions& options) {
+  options.check();
+  Progress progress = options.form == IcapForm::kPaper
+                          ? alignPaperForm(target, source, T_target_source_guess, options)
+                          : alignRobustly(target, source, T_target_source_guess, options);
+  const IcapStatus status = statusOf(progress, T_target_source_guess, options);
+  if (status == IcapStatus::kTooFewPlanes) progress.T_target_source = T_target_source_guess;
+  return describe(target, source, progress, status, options);
+}
+
+}  // namespace planecloud_slam

@@ -1,0 +1,108 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/icap/plane_normal_equations.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace planecloud_slam {
+namespace {
+
+using Matrix3x6d = Eigen::Matrix<double, 3, 6>;
+
+/// Geman-McClure: weight of a residual of `squared` standard deviations^2.
+double kernelWeight(double squared, double width) {
+  const double root = 1.0 / (1.0 + squared / (width * width));
+  return root * root;
+}
+
+double variance(double target, double source, double floor) {
+  return target * target + source * source + floor * floor;
+}
+
+/// One match in the source's axes.
+struct Residual {
+  Eigen::Vector3d normal;      // of the target, in source axes
+  Eigen::Vector3d point;       // source centroid
+  Eigen::Vector3d difference;  // source normal minus target normal
+  double distance = 0.0;       // of the centroid to the target's plane [m]
+};
+
+void addDistance(const Residual& r, double weight, double normal_variance,
+                 PlaneNormalEquations& system) {
+  Matrix3x6d motion;  // of the point under a twist
+  motion << Eigen::Matrix3d::Identity(), -skew(r.point);
+  const Vector6d jacobian = motion.transpose() * r.normal;
+  system.hessian.noalias() += weight * jacobian * jacobian.transpose();
+  system.gradient += weight * r.distance * jacobian;
+  const Eigen::Matrix3d spread =
+      weight * normal_variance * (Eigen::Matrix3d::Identity() - r.normal * r.normal.transpose());
+  system.noise.noalias() += motion.transpose() * spread * motion;
+}
+
+void addNormal(const Residual& r, const Eigen::Vector3d& source_normal, double weight,
+               double normal_variance, PlaneNormalEquations& system) {
+  // n + phi x n - m = difference - [n]x phi, and [n]x^T [n]x = I - n n^T.
+  const Eigen::Matrix3d dyad = source_normal * source_normal.transpose();
+  system.hessian.bottomRightCorner<3, 3>() += weight * (Eigen::Matrix3d::Identity() - dyad);
+  system.gradient.tail<3>() += weight * source_normal.cross(r.difference);
+  system.noise.bottomRightCorner<3, 3>() +=
+      weight * normal_variance * (Eigen::Matrix3d::Identity() + dyad);
+}
+
+}  // namespace
+
+PlaneNormalEquations buildNormalEquations(const std::vector<PatchMatch>& matches,
+                                          const Eigen::Isometry3d& T_target_source,
+                                          double kernel_width, const IcapOptions& options) {
+  PlaneNormalEquations system;
+  const Eigen::Isometry3d T_source_target = T_target_source.inverse();
+  for (const PatchMatch& match : matches) {
+    const PlanePatch& target = *match.target;
+    const PlanePatch& source = *match.source;
+    Residual r;
+    r.normal = T_source_target.linear() * target.normal;
+    r.point = source.centroid;
+    r.difference = source.normal - r.normal;
+    r.distance = r.normal.dot(r.point - T_source_target * target.centroid);
+    const double distance_variance =
+        variance(target.distance_sigma, source.distance_sigma, options.distance_floor);
+    const double normal_variance =
+        variance(target.normal_sigma, source.normal_sigma, options.normal_floor);
+    const double squared = r.distance * r.distance / distance_variance;
+    const double weight = kernelWeight(squared, kernel_width);
+    const double squared_normal = r.difference.squaredNorm() / normal_variance;
+    const double normal_weight = kernelWeight(squared_normal, kernel_width);
+    addDistance(r, weight * normal_weight / distance_variance, normal_variance, system);
+    addNormal(r, source.normal, weight * normal_weight / normal_variance, normal_variance, system);
+    system.weighted_error += weight * squared;
+    system.weight += weight;
+    system.squared_distance += r.distance * r.distance;
+  }
+  return system;
+}
+
+Observability analyseObservability(const PlaneNormalEquations& system, double factor) {
+  // The noise makes a natural unit for every direction: moving the patches by their own errors.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> eigen(system.hessian, system.noise);
+  const Eigen::Index dark = (eigen.eigenvalues().array() < factor).count();
+  Observability result;
+  // Eigenvalues ascend: the first `dark` eigenvectors span what is not observed.
+  const Matrix6d basis =
+      Eigen::Matrix<double, 6, Eigen::Dynamic>(eigen.eigenvectors().leftCols(dark))
+          .householderQr()
+          .householderQ();
+  result.unobserved = basis.leftCols(dark);
+  result.observed = basis.rightCols(6 - dark);
+  return result;
+}
+
+Vector6d solveObserved(const PlaneNormalEquations& system, const Observability& observability) {
+  const Eigen::Matrix<double, 6, Eigen::Dynamic>& basis = observability.observed;
+  if (basis.cols() == 0) return Vector6d::Zero();
+  const Eigen::MatrixXd reduced = basis.transpose() * system.hessian * basis;
+  return -basis * reduced.ldlt().solve(basis.transpose() * system.gradient);
+}
+
+}  // namespace planecloud_slam
