@@ -2,12 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace planecloud_slam {
 namespace {
 
+constexpr double kCoverageStep = 1e-4;  // [-]
+constexpr double kErrorStep = 1e-5;     // [m]
+constexpr double kTimeStep = 1e-4;      // [s]
+constexpr double kMaxSteps = 65535.0;
+constexpr double kMaxCoverageSteps = 10000.0;
+
 double roundToSingle(double value) { return static_cast<double>(static_cast<float>(value)); }
+
+std::uint16_t countSteps(double value, double step, double max_steps) {
+  const double steps = std::round(value / step);
+  if (!(steps > 0.0)) return 0;
+  return static_cast<std::uint16_t>(std::min(steps, max_steps));
+}
+
+PlaneCloudStatistics roundStatistics(const PlaneCloudStatistics& statistics) {
+  PlaneCloudStatistics rounded = unpackStatistics(packStatistics(statistics));
+  rounded.stopped_by_time = statistics.stopped_by_time;
+  rounded.stopped_by_bytes = statistics.stopped_by_bytes;
+  return rounded;
+}
 
 }  // namespace
 
@@ -47,6 +67,22 @@ Matrix6d unpackInformation(const PackedInformation& packed) {
   return information;
 }
 
+PackedStatistics packStatistics(const PlaneCloudStatistics& statistics) {
+  return {countSteps(statistics.coverage, kCoverageStep, kMaxCoverageSteps),
+          countSteps(statistics.point_plane_error, kErrorStep, kMaxSteps),
+          countSteps(statistics.depth_error, kErrorStep, kMaxSteps),
+          countSteps(statistics.fit_time, kTimeStep, kMaxSteps)};
+}
+
+PlaneCloudStatistics unpackStatistics(const PackedStatistics& packed) {
+  PlaneCloudStatistics statistics;
+  statistics.coverage = kCoverageStep * packed.coverage;
+  statistics.point_plane_error = kErrorStep * packed.point_plane_error;
+  statistics.depth_error = kErrorStep * packed.depth_error;
+  statistics.fit_time = kTimeStep * packed.fit_time;
+  return statistics;
+}
+
 CameraIntrinsics roundCamera(CameraIntrinsics camera) {
   for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) {
     *value = roundToSingle(*value);
@@ -64,6 +100,7 @@ Keyframe asTravelled(Keyframe keyframe) {
   keyframe.stamp = roundStamp(keyframe.stamp);
   keyframe.T_odom_camera = unpackPose(packPose(keyframe.T_odom_camera));
   keyframe.planes.camera = roundCamera(keyframe.planes.camera);
+  keyframe.planes.statistics = roundStatistics(keyframe.planes.statistics);
   for (RelativePoseEdge& edge : keyframe.edges) {
     edge.T_other_this = unpackPose(packPose(edge.T_other_this));
     edge.information = unpackInformation(packInformation(edge.information));

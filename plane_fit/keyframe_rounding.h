@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
@@ -23,6 +24,19 @@ using PackedInformation = std::array<float, 21>;
 
 [[nodiscard]] PackedInformation packInformation(const Matrix6d& information);
 [[nodiscard]] Matrix6d unpackInformation(const PackedInformation& packed);
+
+/// What travels of `PlaneCloudStatistics` besides its flags; what is out of range saturates, NaN
+/// becomes 0.
+struct PackedStatistics {
+  std::uint16_t coverage = 0;           ///< [1e-4], at most 10000
+  std::uint16_t point_plane_error = 0;  ///< [1e-5 m]
+  std::uint16_t depth_error = 0;        ///< [1e-5 m]
+  std::uint16_t fit_time = 0;           ///< [1e-4 s]
+};
+
+[[nodiscard]] PackedStatistics packStatistics(const PlaneCloudStatistics& statistics);
+/// The flags are false.
+[[nodiscard]] PlaneCloudStatistics unpackStatistics(const PackedStatistics& packed);
 
 /// Focal lengths, principal point and distortion in single precision.
 [[nodiscard]] CameraIntrinsics roundCamera(CameraIntrinsics camera);

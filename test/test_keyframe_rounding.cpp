@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 
 namespace planecloud_slam {
@@ -52,6 +54,25 @@ TEST(KeyframeRounding, IsDoneAfterTheFirstTime) {
   EXPECT_EQ(packInformation(once.edges[0].information),
             packInformation(asTravelled(once).edges[0].information));
   EXPECT_LT(logSe3(once.T_odom_camera.inverse() * asTravelled(once).T_odom_camera).norm(), 1e-5);
+}
+
+TEST(KeyframeRounding, KeepsStatisticsToTheirStepAndFlagsExactly) {
+  Keyframe keyframe = someKeyframe();
+  keyframe.planes.statistics = {0.98765, 0.0027123, 0.0131, 0.01234, true, true};
+  const PlaneCloudStatistics statistics = asTravelled(keyframe).planes.statistics;
+  EXPECT_NEAR(statistics.coverage, 0.98765, 0.5e-4);           // half a step
+  EXPECT_NEAR(statistics.point_plane_error, 0.0027123, 5e-6);  // half a step
+  EXPECT_NEAR(statistics.depth_error, 0.0131, 5e-6);           // half a step
+  EXPECT_NEAR(statistics.fit_time, 0.01234, 5e-5);             // half a step
+  EXPECT_TRUE(statistics.stopped_by_time && statistics.stopped_by_bytes);
+}
+
+TEST(KeyframeRounding, SaturatesStatisticsOutOfRange) {
+  const PackedStatistics packed = packStatistics({1.5, 1e9, -1.0, std::nan(""), false, false});
+  EXPECT_EQ(packed.coverage, 10000);
+  EXPECT_EQ(packed.point_plane_error, 65535);
+  EXPECT_EQ(packed.depth_error, 0);
+  EXPECT_EQ(packed.fit_time, 0);
 }
 
 }  // namespace
