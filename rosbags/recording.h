@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ class Recording {
   [[nodiscard]] virtual const Trajectory& groundTruth() const = 0;
   /// Exact depth of the frame last returned [m], NaN: none; only the built-in world knows it.
   [[nodiscard]] virtual std::optional<Image<float>> trueDepth() const { return std::nullopt; }
+  /// Colour of the frame last returned, 8UC3, blue first; empty when only grey is known.
+  [[nodiscard]] virtual cv::Mat color() const { return {}; }
 };
 
 }  // namespace planecloud_slam
