@@ -1,0 +1,64 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/plane_fit/plane_regression.h"
+
+namespace planecloud_slam {
+namespace {
+
+/// Mean square spread of pixels below which a direction counts as not spanned, relative to the
+/// other one: tiles are at most 80 px long (variance 533 px^2), two neighbouring rows have 1/4
+/// px^2.
+constexpr double kMinSpreadRatio = 1e-5;
+
+}  // namespace
+
+void TileMoments::add(double pixel_u, double pixel_v, double pixel_q) {
+  n += 1.0;
+  u += pixel_u;
+  v += pixel_v;
+  uu += pixel_u * pixel_u;
+  uv += pixel_u * pixel_v;
+  vv += pixel_v * pixel_v;
+  q += pixel_q;
+  qu += pixel_q * pixel_u;
+  qv += pixel_q * pixel_v;
+  qq += pixel_q * pixel_q;
+}
+
+TileMoments& TileMoments::operator+=(const TileMoments& other) {
+  n += other.n;
+  u += other.u;
+  v += other.v;
+  uu += other.uu;
+  uv += other.uv;
+  vv += other.vv;
+  q += other.q;
+  qu += other.qu;
+  qv += other.qv;
+  qq += other.qq;
+  return *this;
+}
+
+TangentScatterInverse invertTangentScatter(const TileMoments& m) {
+  const double uu = m.uu - m.u * m.u / m.n;
+  const double uv = m.uv - m.u * m.v / m.n;
+  const double vv = m.vv - m.v * m.v / m.n;
+  const double trace = uu + vv;
+  const double det = uu * vv - uv * uv;
+  if (det > kMinSpreadRatio * trace * trace) return {vv / det, -uv / det, uu / det};
+  // One direction only: S = trace * e e^T has the pseudo-inverse S / trace^2. A single pixel has
+  // no direction: what is left of its trace is rounding.
+  if (!(trace > 1e-12 * (m.uu + m.vv)) || m.n < 2.0) return {};
+  return {uu / (trace * trace), uv / (trace * trace), vv / (trace * trace)};
+}
+
+Eigen::Vector3d regressInverseDepth(const TileMoments& m) {
+  const TangentScatterInverse inverse = invertTangentScatter(m);
+  const double qu = m.qu - m.u * m.q / m.n;
+  const double qv = m.qv - m.v * m.q / m.n;
+  const double alpha = inverse.uu * qu + inverse.uv * qv;
+  const double beta = inverse.uv * qu + inverse.vv * qv;
+  return {alpha, beta, (m.q - alpha * m.u - beta * m.v) / m.n};
+}
+
+}  // namespace planecloud_slam

@@ -1,0 +1,29 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace planecloud_slam {
+
+/// The paper's scatter matrix of a tile (eq. (4)) as sums over its pixels with depth: tangents
+/// u, v [-] about any fixed origin, inverse depth q [1/m].
+struct TileMoments {
+  double n = 0.0, u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;
+  double q = 0.0, qu = 0.0, qv = 0.0, qq = 0.0;
+
+  void add(double pixel_u, double pixel_v, double pixel_q);
+  TileMoments& operator+=(const TileMoments& other);
+};
+
+/// Least squares of q = alpha u + beta v + gamma, about the moments' origin (n > 0). Where the
+/// pixels do not span a direction (one row, one column, a diagonal) the slope across it is 0.
+[[nodiscard]] Eigen::Vector3d regressInverseDepth(const TileMoments& moments);
+
+/// The inverse of the centred 2x2 scatter of (u, v), pseudo-inverse where it is singular.
+struct TangentScatterInverse {
+  double uu = 0.0, uv = 0.0, vv = 0.0;
+};
+[[nodiscard]] TangentScatterInverse invertTangentScatter(const TileMoments& moments);
+
+}  // namespace planecloud_slam
