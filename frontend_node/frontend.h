@@ -60,8 +60,9 @@ class Frontend {
   Frontend(Frontend&&) noexcept;
   Frontend& operator=(Frontend&&) noexcept;
 
-  /// Tracks one frame. `T_reference_guess`, when given, is the motion since the previous frame from
-  /// elsewhere (wheel odometry): T_previous_current of the optical frame.
+  /// Tracks one frame. `T_previous_current`, when given, is the motion of the optical frame since
+  /// the previous call from elsewhere (wheel odometry). A stamp before the previous one begins a
+  /// new segment, so does the first good frame after `lost/new_segment_after` without a track.
   /// Throws std::invalid_argument when the frame's size is not the camera's.
   [[nodiscard]] FrameResult track(const RgbdFrame& frame,
                                   const std::optional<Eigen::Isometry3d>& T_previous_current = {});
@@ -74,6 +75,10 @@ class Frontend {
 
   /// Ends the segment: time went backwards or the camera changed. The open keyframe is completed.
   void startNewSegment();
+
+  /// Where the next segment begins, T_odom_camera of its first frame; else a levelled camera at
+  /// the origin that looks along x, and after a loss the last known pose.
+  void setNextPose(const Eigen::Isometry3d& T_odom_camera);
 
  private:
   class Impl;

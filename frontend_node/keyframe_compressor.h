@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "planecloud_slam/frontend_node/frontend.h"
+#include "planecloud_slam/plane_fit/budget.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 
 namespace planecloud_slam {
@@ -19,7 +21,11 @@ class KeyframeCompressor {
   KeyframeCompressor(KeyframeCompressor&&) noexcept;
   KeyframeCompressor& operator=(KeyframeCompressor&&) noexcept;
 
-  [[nodiscard]] Keyframe compress(CompletedKeyframe completed);
+  /// Fits, encodes and describes. `now` is the clock of `plane_fit/time_budget` (normally
+  /// `&FitBudget::Clock::now`); without it there is no time budget and the result depends on the
+  /// keyframe alone.
+  [[nodiscard]] Keyframe compress(CompletedKeyframe completed,
+                                  std::function<FitBudget::Clock::time_point()> now = {});
 
  private:
   class Impl;

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "planecloud_slam/plane_fit/camera.h"
+#include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
 namespace planecloud_slam {
@@ -23,6 +28,35 @@ struct LocalMapOptions {
 
   /// Throws std::invalid_argument naming key, value and range.
   void check() const;
+};
+
+/// The frontend's local map: one keyframe whose depth the live frames improve (paper sec. 3.1).
+/// Every pixel is a Gaussian of inverse depth; a frame's depth enters where it agrees with it
+/// within the gate, so occlusions and outliers stay outside. Pixels without depth take the first
+/// they are shown.
+class LocalMap {
+ public:
+  /// Throws std::invalid_argument when `options` or `camera` fail their check, or when the camera
+  /// has distortion.
+  LocalMap(const LocalMapOptions& options, const CameraIntrinsics& camera);
+
+  /// Opens a keyframe with `depth` [m, NaN or <= 0: none] of the camera's size.
+  void open(ImageView<float> depth);
+
+  /// Fuses the `depth` of a frame at `T_keyframe_camera`; nothing when fusion is off.
+  void fuse(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_camera);
+
+  /// The keyframe's depth [m], NaN: none.
+  [[nodiscard]] Image<float> depth() const;
+
+ private:
+  void fillHoles(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_camera);
+  void improvePixels(ImageView<float> depth, const Eigen::Isometry3d& T_camera_keyframe);
+
+  LocalMapOptions options_;
+  CameraIntrinsics camera_;
+  Image<float> inverse_depth_;  ///< mean [1/m], 0: none
+  Image<float> observations_;   ///< frames in the mean
 };
 
 }  // namespace planecloud_slam

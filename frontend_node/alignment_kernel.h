@@ -1,0 +1,74 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "planecloud_slam/frontend_node/rgbd_pyramid.h"
+#include "planecloud_slam/frontend_node/robust_weight.h"
+#include "planecloud_slam/frontend_node/tracking_reference.h"
+
+/// The inner loops of dense tracking, over all points of one level. The residuals at a pose are
+///
+///     r_grey = (I_current(x) - offset) / gain - I_reference
+///     r_q    = q_current(x) - 1 / [T_current_reference p]_z
+///
+/// with x the projection of the warped point and q inverse depth: Kerl's depth residual (2013b
+/// eq. (4)) divided by z^2, so that sensor noise, which grows as z^2, has one scale everywhere.
+namespace planecloud_slam {
+
+/// Brightness of the current image as a function of the reference: `I = gain * I_ref + offset`.
+struct Brightness {
+  double gain = 1.0;
+  double offset = 0.0;  ///< [grey levels]
+};
+
+/// Residuals of every reference point and the room to compute them; keeps its memory.
+struct Residuals {
+  std::vector<float> x, y, predicted_q;  ///< projected pixel and inverse depth of the warped point
+  std::vector<float> grey, q, seen;      ///< see `ResidualView`; padded like the points
+  std::size_t in_image = 0;              ///< points that project into the image, on valid depth
+  std::size_t agreeing = 0;              ///< of these: depth as predicted to 5 %
+  std::size_t seen_count = 0;            ///< of these: depth as predicted to 20 %, not occluded
+
+  [[nodiscard]] ResidualView view() const { return {grey.data(), q.data(), seen.data(), q.size()}; }
+};
+
+/// Warps `points` by `T_current_reference` into `current` and compares.
+void computeResiduals(const ReferencePoints& points, const RgbdLevel& current,
+                      const Eigen::Isometry3d& T_current_reference, const Brightness& brightness,
+                      Residuals& residuals);
+
+/// Unknowns of one step: twist of the reference (translation, rotation), then what the grey
+/// residual gains per unit: a constant, and `(I_reference - 128) / 64`.
+constexpr int kUnknowns = 8;
+using StepVector = Eigen::Matrix<double, kUnknowns, 1>;
+using StepMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+/// `matrix = sum w J^T Sigma^-1 J`, `vector = sum w J^T Sigma^-1 r` (Kerl 2013b eq. (9)) with t
+/// weights `w = (nu + 2) / (nu + r^T Sigma^-1 r)`.
+struct NormalEquations {
+  StepMatrix matrix = StepMatrix::Zero();
+  StepVector vector = StepVector::Zero();
+  double error = 0.0;  ///< sum w r^T Sigma^-1 r
+};
+
+/// The Jacobians are those of the reference (inverse compositional): a solution `xi` of
+/// `matrix xi = vector` moves the pose by `T_current_reference * Exp(-xi)`.
+[[nodiscard]] NormalEquations accumulateNormalEquations(const ReferencePoints& points,
+                                                        const ResidualView& residuals,
+                                                        const ResidualScale& scale, double nu);
+
+/// `sum_b g_b g_b^T` over the image blocks b, where g_b is the block's part of
+/// `NormalEquations::vector`: the spread of the gradient when errors within a block are
+/// correlated (cluster-robust covariance). Also counts the blocks that contributed.
+struct BlockScatter {
+  StepMatrix matrix = StepMatrix::Zero();
+  int blocks = 0;
+};
+[[nodiscard]] BlockScatter accumulateBlockScatter(const ReferencePoints& points,
+                                                  const ResidualView& residuals,
+                                                  const ResidualScale& scale, double nu);
+
+}  // namespace planecloud_slam

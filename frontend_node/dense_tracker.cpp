@@ -1,0 +1,202 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/frontend_node/dense_tracker.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace planecloud_slam {
+namespace {
+
+constexpr std::size_t kMinPoints = 60;
+/// A step that makes the residuals' scale grow by more than this (log) is taken back.
+constexpr double kMaxLogGrowth = 0.02;
+constexpr int kFirstScalePasses = 4;
+constexpr double kStartSigmaGrey = 20.0;
+constexpr double kStartSigmaQ = 0.05;
+constexpr double kMinGain = 0.1;
+constexpr double kMaxGain = 10.0;
+
+/// Applies `step` to brightness, see `kUnknowns`.
+Brightness updateBrightness(const Brightness& brightness, const StepVector& step) {
+  const double gain_change = step(7) / 64.0;
+  Brightness updated;
+  updated.gain = brightness.gain * (1.0 + gain_change);
+  updated.gain = std::min(std::max(updated.gain, kMinGain), kMaxGain);
+  updated.offset = brightness.offset + brightness.gain * (step(6) - 128.0 * gain_change);
+  return updated;
+}
+
+/// Removes the brightness unknowns: the information of the twist alone.
+Matrix6d marginalPoseInformation(const StepMatrix& matrix) {
+  const Eigen::Matrix<double, 6, 2> cross = matrix.topRightCorner<6, 2>();
+  const Eigen::Matrix2d brightness = matrix.bottomRightCorner<2, 2>();
+  return matrix.topLeftCorner<6, 6>() - cross * brightness.inverse() * cross.transpose();
+}
+
+}  // namespace
+
+/// What one alignment carries from iteration to iteration.
+struct DenseTracker::State {
+  Eigen::Isometry3d T_current_reference = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_current_reference_prior = Eigen::Isometry3d::Identity();
+  Brightness brightness;
+  ResidualScale scale{kStartSigmaGrey, kStartSigmaQ, 0.0};
+  NormalEquations equations;  ///< of the last iteration, without prior
+  int iterations = 0;
+};
+
+DenseTracker::DenseTracker(const DenseTrackerOptions& options) : options_(options) {
+  options_.check();
+}
+
+DenseTracker::State DenseTracker::chooseStart(const ReferencePoints& points,
+                                              const RgbdLevel& current,
+                                              const AlignmentStart& start) {
+  State best;
+  double best_volume = std::numeric_limits<double>::infinity();
+  for (const Eigen::Isometry3d& T_reference_current : start.T_reference_current) {
+    State state;
+    state.brightness = start.brightness;
+    state.T_current_reference = T_reference_current.inverse();
+    state.T_current_reference_prior = start.T_reference_current.front().inverse();
+    computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
+    for (int pass = 0; pass < kFirstScalePasses; ++pass) {
+      state.scale = reestimateScale(residuals_.view(), state.scale, options_.degrees_of_freedom);
+    }
+    const bool comparable = residuals_.seen_count >= kMinPoints;
+    const double volume = comparable ? state.scale.logVolume() : std::numeric_limits<double>::max();
+    if (volume >= best_volume) continue;
+    best_volume = volume;
+    best = state;
+  }
+  return best;
+}
+
+void DenseTracker::addPrior(const State& state, NormalEquations& equations) const {
+  if (options_.prior_translation <= 0.0 && options_.prior_rotation <= 0.0) return;
+  const auto weight = [](double sigma) { return sigma > 0.0 ? 1.0 / (sigma * sigma) : 0.0; };
+  Vector6d information;
+  information.head<3>().setConstant(weight(options_.prior_translation));
+  information.tail<3>().setConstant(weight(options_.prior_rotation));
+  // The step moves T to T Exp(-xi), and the prior wants T Exp(-xi) = T_prior.
+  const Vector6d wanted =
+      logSe3(state.T_current_reference_prior.inverse() * state.T_current_reference);
+  equations.matrix.topLeftCorner<6, 6>().diagonal() += information;
+  equations.vector.head<6>() += information.cwiseProduct(wanted);
+}
+
+void DenseTracker::restrictBrightness(NormalEquations& equations) const {
+  const int free = options_.brightness == BrightnessModel::kGainAndOffset ? 2
+                   : options_.brightness == BrightnessModel::kOffset      ? 1
+                                                                          : 0;
+  for (int k = 6 + free; k < kUnknowns; ++k) {
+    equations.matrix.row(k).setZero();
+    equations.matrix.col(k).setZero();
+    equations.matrix(k, k) = 1.0;
+    equations.vector(k) = 0.0;
+  }
+}
+
+AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const RgbdLevel& current,
+                                         State& state) {
+  State best = state;
+  double best_volume = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < options_.max_iterations; ++iteration, ++state.iterations) {
+    computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
+    if (residuals_.seen_count < kMinPoints) return AlignmentStatus::kTooFewPoints;
+    for (int pass = iteration == 0 ? kFirstScalePasses : 1; pass > 0; --pass) {
+      state.scale = reestimateScale(residuals_.view(), state.scale, options_.degrees_of_freedom);
+    }
+    const double volume = state.scale.logVolume();
+    if (volume > best_volume + kMaxLogGrowth) {
+      const int iterations = state.iterations;
+      state = best;
+      state.iterations = iterations;
+      computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
+      return AlignmentStatus::kConverged;
+    }
+    state.equations = accumulateNormalEquations(points, residuals_.view(), state.scale,
+                                                options_.degrees_of_freedom);
+    restrictBrightness(state.equations);
+    if (volume < best_volume) {
+      best_volume = volume;
+      best = state;
+    }
+    NormalEquations equations = state.equations;
+    addPrior(state, equations);
+    const Eigen::LDLT<StepMatrix> ldlt(equations.matrix);
+    const StepVector step = ldlt.solve(equations.vector);
+    if (!ldlt.isPositive() || !step.allFinite()) return AlignmentStatus::kDegenerate;
+    state.T_current_reference = state.T_current_reference * expSe3(-step.head<6>());
+    state.brightness = updateBrightness(state.brightness, step);
+    if (step.dot(equations.vector) < options_.min_relative_change * state.equations.error) {
+      return AlignmentStatus::kConverged;
+    }
+  }
+  return AlignmentStatus::kNotConverged;
+}
+
+void DenseTracker::setInformation(const ReferencePoints& points, const State& state,
+                                  Alignment& alignment) const {
+  const Matrix6d independent = marginalPoseInformation(state.equations.matrix);
+  // A twist at the reference, T_current_reference Exp(-xi), is the twist Ad(T_current_reference) xi
+  // at the current frame.
+  const Matrix6d to_reference = adjoint(alignment.T_reference_current);
+  alignment.normal_matrix = to_reference.transpose() * independent * to_reference;
+  alignment.information = options_.information_scale * alignment.normal_matrix;
+  if (options_.information_block == 0) return;
+
+  const BlockScatter scatter =
+      accumulateBlockScatter(points, residuals_.view(), state.scale, options_.degrees_of_freedom);
+  if (scatter.blocks <= 2 * kUnknowns) {
+    alignment.information /= options_.information_block;
+    return;
+  }
+  StepMatrix S = scatter.matrix;
+  NormalEquations restricted{S, StepVector::Zero(), 0.0};
+  restrictBrightness(restricted);
+  S = restricted.matrix * (scatter.blocks / static_cast<double>(scatter.blocks - kUnknowns));
+  const StepMatrix inverse = state.equations.matrix.ldlt().solve(StepMatrix::Identity());
+  const Matrix6d clustered = (inverse * S * inverse).topLeftCorner<6, 6>();
+  const Matrix6d covariance = inverse.topLeftCorner<6, 6>();
+  // The scatter of some dozen blocks is a noisy estimate: lean on the shape of the normal matrix.
+  const double inflation = (independent * clustered).trace() / 6.0;
+  const Matrix6d blended = 0.5 * (clustered + inflation * covariance);
+  const Matrix6d information = blended.ldlt().solve(Matrix6d::Identity());
+  alignment.information = options_.information_scale * to_reference.transpose() *
+                          (0.5 * (information + information.transpose())) * to_reference;
+}
+
+Alignment DenseTracker::align(const TrackingReference& reference, const RgbdPyramid& current,
+                              const AlignmentStart& start) {
+  const std::vector<ReferencePoints>& points = reference.levels();
+  if (points.size() != current.levels().size()) {
+    throw std::invalid_argument("reference and current image have different pyramid levels");
+  }
+  if (start.T_reference_current.empty()) {
+    throw std::invalid_argument("an alignment needs at least one start");
+  }
+  State state = chooseStart(points.back(), current.levels().back(), start);
+  Alignment alignment;
+  for (std::size_t level = points.size(); level-- > 0;) {
+    alignment.status = alignLevel(points[level], current.levels()[level], state);
+  }
+  alignment.T_reference_current = state.T_current_reference.inverse();
+  alignment.brightness = state.brightness;
+  alignment.scale = state.scale;
+  alignment.iterations = state.iterations;
+  const auto count = static_cast<double>(std::max<std::size_t>(points.front().count, 1));
+  alignment.overlap = static_cast<double>(residuals_.in_image) / count;
+  alignment.inliers = static_cast<double>(residuals_.agreeing) /
+                      static_cast<double>(std::max<std::size_t>(residuals_.in_image, 1));
+  if (alignment.status == AlignmentStatus::kConverged ||
+      alignment.status == AlignmentStatus::kNotConverged) {
+    setInformation(points.front(), state, alignment);
+  }
+  return alignment;
+}
+
+}  // namespace planecloud_slam

@@ -1,0 +1,98 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/frontend_node/loss_detector.h"
+
+#include <cmath>
+#include <cstddef>
+#include <iomanip>
+#include <sstream>
+
+#include "planecloud_slam/plane_fit/se3.h"
+
+namespace planecloud_slam {
+namespace {
+
+constexpr int kSampleStep = 4;
+/// Allowed on top of speed times time: stamps jitter.
+constexpr double kMotionSlack = 0.05;  // [m] and [rad]
+
+std::string compare(const std::string& what, double value, const std::string& relation,
+                    double limit) {
+  std::ostringstream text;
+  text << std::setprecision(3) << what << " " << value << " " << relation << " " << limit;
+  return text.str();
+}
+
+}  // namespace
+
+LossDetector::LossDetector(const LossOptions& options) : options_(options) { options_.check(); }
+
+std::string LossDetector::findImageFault(const RgbdFrame& frame) const {
+  double n = 0.0, sum = 0.0, sum_squares = 0.0, valid = 0.0;
+  for (int y = 0; y < frame.grey.height(); y += kSampleStep) {
+    for (int x = 0; x < frame.grey.width(); x += kSampleStep) {
+      const double grey = frame.grey(x, y);
+      n += 1.0;
+      sum += grey;
+      sum_squares += grey * grey;
+      const float z = frame.depth(x, y);
+      if (std::isfinite(z) && z > 0.0F) valid += 1.0;
+    }
+  }
+  if (valid == 0.0) return "the depth image has no valid pixel";
+  if (valid < options_.min_valid_depth * n) {
+    return compare("the share of pixels with depth is", valid / n, "<", options_.min_valid_depth);
+  }
+  const double mean = sum / n;
+  const double deviation = std::sqrt(std::max(0.0, sum_squares / n - mean * mean));
+  if (deviation < options_.min_contrast) {
+    return compare("the colour image is blank: its standard deviation is", deviation, "<",
+                   options_.min_contrast);
+  }
+  return "";
+}
+
+std::string LossDetector::findAlignmentFault(const Alignment& alignment,
+                                             const TrackedMotion& motion) const {
+  if (alignment.status == AlignmentStatus::kTooFewPoints) {
+    return "too little of the keyframe is in view";
+  }
+  if (alignment.status == AlignmentStatus::kDegenerate) {
+    return "the images do not determine the motion";
+  }
+  if (alignment.status == AlignmentStatus::kNotConverged) {
+    return "the alignment did not converge";
+  }
+  if (alignment.overlap < options_.min_overlap) {
+    return compare("the keyframe's share in view is", alignment.overlap, "<", options_.min_overlap);
+  }
+  if (alignment.inliers < options_.min_inliers) {
+    return compare("the share of agreeing depths is", alignment.inliers, "<", options_.min_inliers);
+  }
+  if (alignment.scale.sigma_q > options_.max_depth_residual) {
+    return compare("the inverse depth residuals [1/m] are", alignment.scale.sigma_q, ">",
+                   options_.max_depth_residual);
+  }
+  if (alignment.scale.sigma_grey > options_.max_intensity_residual) {
+    return compare("the grey residuals are", alignment.scale.sigma_grey, ">",
+                   options_.max_intensity_residual);
+  }
+  if (motion.entropy_ratio < options_.min_entropy_ratio) {
+    return compare("the entropy ratio is", motion.entropy_ratio, "<", options_.min_entropy_ratio);
+  }
+  const double translation = motion.T_previous_current.translation().norm();
+  if (translation > options_.max_speed * motion.seconds + kMotionSlack) {
+    return compare(
+        "the motion [m] since the last good frame is", translation,
+        "> what the speed limit allows:", options_.max_speed * motion.seconds + kMotionSlack);
+  }
+  const double rotation = rotationAngle(motion.T_previous_current);
+  if (rotation > options_.max_turn_rate * motion.seconds + kMotionSlack) {
+    return compare("the turn [rad] since the last good frame is", rotation,
+                   "> what the turn rate limit allows:",
+                   options_.max_turn_rate * motion.seconds + kMotionSlack);
+  }
+  return "";
+}
+
+}  // namespace planecloud_slam

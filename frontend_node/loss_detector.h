@@ -1,0 +1,38 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "planecloud_slam/frontend_node/dense_tracker.h"
+#include "planecloud_slam/frontend_node/frontend.h"
+#include "planecloud_slam/frontend_node/loss_options.h"
+
+namespace planecloud_slam {
+
+/// What a track must explain besides its alignment.
+struct TrackedMotion {
+  double entropy_ratio = 1.0;  ///< see `KeyframeSelector::entropyRatio`
+  Eigen::Isometry3d T_previous_current = Eigen::Isometry3d::Identity();  ///< since the last good
+  double seconds = 0.0;                                                  ///< since the last good
+};
+
+/// Says why a frame or its alignment cannot be trusted.
+class LossDetector {
+ public:
+  /// Throws std::invalid_argument when `options` fail their check.
+  explicit LossDetector(const LossOptions& options);
+
+  /// Why the image pair is useless; empty when it is not.
+  [[nodiscard]] std::string findImageFault(const RgbdFrame& frame) const;
+
+  /// Why the alignment is not to be believed; empty when it is.
+  [[nodiscard]] std::string findAlignmentFault(const Alignment& alignment,
+                                               const TrackedMotion& motion) const;
+
+ private:
+  LossOptions options_;
+};
+
+}  // namespace planecloud_slam

@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+namespace planecloud_slam {
+
+/// The scale matrix of a bivariate t-distribution of (grey, inverse depth) residuals, held as the
+/// whitening `e1 = (r_grey - slope r_q) / sigma_grey`, `e2 = r_q / sigma_q`, so that
+/// `r^T Sigma^-1 r = e1^2 + e2^2`.
+struct ResidualScale {
+  double sigma_grey = 0.0;  ///< of grey, given the inverse depth residual [grey levels]
+  double sigma_q = 0.0;     ///< of inverse depth [1/m]
+  double slope = 0.0;       ///< regression of grey on inverse depth residuals [grey levels m]
+
+  /// Half the log of the determinant of Sigma.
+  [[nodiscard]] double logVolume() const;
+};
+
+/// Residuals of one image pair; `seen` is 1 where both are measured, else 0 (residuals then 0).
+struct ResidualView {
+  const float* grey = nullptr;
+  const float* q = nullptr;  ///< [1/m]
+  const float* seen = nullptr;
+  std::size_t count = 0;  ///< multiple of `ReferencePoints::kLanes`
+};
+
+/// One step of the maximum-likelihood scale of a bivariate t-distribution with `nu` degrees of
+/// freedom: `Sigma = mean(w r r^T)`, `w = (nu + 2) / (nu + r^T Sigma^-1 r)` with the Sigma of
+/// `previous` in the weights (Kerl 2013b sec. III-C; 2 is the residuals' dimension, where the
+/// paper prints 1: that is the weight of a single residual).
+[[nodiscard]] ResidualScale reestimateScale(const ResidualView& residuals,
+                                            const ResidualScale& previous, double nu);
+
+}  // namespace planecloud_slam
