@@ -89,6 +89,15 @@ class Frontend::Impl {
 
   void setNextPose(const Eigen::Isometry3d& T_odom_camera) { T_odom_start_ = T_odom_camera; }
 
+  std::unique_ptr<Impl> continueWith(const CameraIntrinsics& camera) {
+    auto next = std::make_unique<Impl>(options_, camera, next_id_.robot, next_id_.session);
+    endSegment();
+    next->next_id_ = next_id_;
+    next->completed_ = std::move(completed_);
+    next->T_odom_start_ = T_odom_start_;
+    return next;
+  }
+
  private:
   /// Where the frame at `stamp` should be, from wheel odometry, else at constant velocity.
   void predictMotion(double stamp, const std::optional<Eigen::Isometry3d>& T_previous_current) {
@@ -235,6 +244,10 @@ std::vector<CompletedKeyframe> Frontend::takeCompleted() { return impl_->takeCom
 void Frontend::finish() { impl_->endSegment(); }
 
 void Frontend::startNewSegment() { impl_->endSegment(); }
+
+void Frontend::changeCamera(const CameraIntrinsics& camera) {
+  impl_ = impl_->continueWith(camera);
+}
 
 void Frontend::setNextPose(const Eigen::Isometry3d& T_odom_camera) {
   impl_->setNextPose(T_odom_camera);

@@ -76,6 +76,10 @@ class Frontend {
   /// Ends the segment: time went backwards or the camera changed. The open keyframe is completed.
   void startNewSegment();
 
+  /// Goes on with another camera: ends the segment and keeps counting keyframes.
+  /// Throws std::invalid_argument, and changes nothing, when `camera` fails its check.
+  void changeCamera(const CameraIntrinsics& camera);
+
   /// Where the next segment begins, T_odom_camera of its first frame; else a levelled camera at
   /// the origin that looks along x, and after a loss the last known pose.
   void setNextPose(const Eigen::Isometry3d& T_odom_camera);
