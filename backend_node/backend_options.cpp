@@ -59,7 +59,6 @@ void ClosureConsistencyOptions::check() const {
   checkRange("loop_closure/consistency/min_inter", min_inter, 1, 20);
   checkRange("loop_closure/consistency/max_distance", max_distance, 1e-3, 1e3);
   checkRange("loop_closure/consistency/max_path", max_path, 0.0, 1e3);
-  checkRange("loop_closure/consistency/min_motion", min_motion, 0.0, 10.0);
   checkRange("loop_closure/consistency/join_translation", join_translation, 1e-4, 10.0);
   checkRange("loop_closure/consistency/join_rotation", join_rotation, 1e-4, 1.0);
   checkRange("loop_closure/consistency/max_pending", max_pending, 1, 100000);

@@ -84,7 +84,6 @@ struct ClosureConsistencyOptions {
   int min_inter = 4;           ///< to join two components, [1, 20]
   double max_distance = 12.6;  ///< squared Mahalanobis distance of a pair, (0, 1e3]
   double max_path = 4.0;       ///< of each side between two closures that may vouch [m], [0, 1e3]
-  double min_motion = 0.1;     ///< of each side, or the second witness is the first [m], [0, 10]
   double join_translation = 0.1;  ///< the transform that joins must be known to [m], (0, 10]
   double join_rotation = 0.05;    ///< and to [rad], (0, 1]
   int max_pending = 400;          ///< closures that wait for others; the oldest go, [1, 100000]
@@ -95,7 +94,6 @@ struct ClosureConsistencyOptions {
     visit("min_inter", self.min_inter);
     visit("max_distance", self.max_distance);
     visit("max_path", self.max_path);
-    visit("min_motion", self.min_motion);
     visit("join_translation", self.join_translation);
     visit("join_rotation", self.join_rotation);
     visit("max_pending", self.max_pending);

@@ -1,0 +1,180 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/backend.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "planecloud_slam/backend_node/closure_consistency.h"
+#include "planecloud_slam/backend_node/closure_verifier.h"
+#include "planecloud_slam/backend_node/drift_model.h"
+#include "planecloud_slam/backend_node/keyframe_check.h"
+#include "planecloud_slam/backend_node/keyframe_map.h"
+#include "planecloud_slam/backend_node/loop_closure_detector.h"
+#include "planecloud_slam/backend_node/plane_set_cache.h"
+#include "planecloud_slam/backend_node/session_ledger.h"
+
+namespace planecloud_slam {
+namespace {
+
+/// Keyframes kept prepared for alignment.
+constexpr std::size_t kPreparedKeyframes = 256;
+
+BackendOptions checked(BackendOptions options) {
+  options.check();
+  return options;
+}
+
+}  // namespace
+
+class Backend::Impl {
+ public:
+  explicit Impl(const BackendOptions& options)
+      : options_(checked(options)),
+        map_(options_.graph, options_.map),
+        detector_(options_.loop_closure.candidates, options_.loop_closure.drift),
+        verifier_(options_.loop_closure.verification, options_.icap),
+        consistency_(options_.loop_closure.consistency, options_.loop_closure.drift),
+        plane_sets_(options_.icap.planes, kPreparedKeyframes) {}
+
+  InsertionResult insert(Keyframe keyframe) {
+    InsertionResult result;
+    if (map_.graph().find(keyframe.id)) {
+      result.status = InsertionStatus::kDuplicate;
+      result.reason = "keyframe " + toString(keyframe.id) + " is in the map already: ignored";
+      return result;
+    }
+    KeyframeCheck check = checkKeyframe(keyframe);
+    result.reason = check.reason;
+    if (!check.planes) return result;
+    result.reason = sessions_.clash(keyframe);
+    if (!result.reason.empty()) {
+      result.status = InsertionStatus::kNameClash;
+      return result;
+    }
+    sessions_.record(keyframe);
+    const int node = map_.add(std::move(keyframe), std::move(check.planes));
+    result.status = InsertionStatus::kInserted;
+    changed();
+    if (options_.loop_closure.candidates.enabled) closeLoops(node, result);
+    if (!result.closures.empty()) {
+      optimize();
+      result.optimised = true;
+    }
+    return result;
+  }
+
+  void optimize() {
+    for (const GraphEdge& closure : map_.graph().optimize().removed) {
+      static_cast<void>(closure);
+      ++rejected_["removed_after_optimisation"];
+    }
+    changed();
+  }
+
+  void reset() {
+    const std::uint64_t revision = revision_;
+    *this = Impl(options_);
+    revision_ = revision + 1;
+  }
+
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() {
+    if (!snapshot_) snapshot_ = map_.snapshot(revision_);
+    return snapshot_;
+  }
+
+  [[nodiscard]] BackendStatistics statistics() const {
+    BackendStatistics statistics;
+    statistics.keyframes = static_cast<std::size_t>(map_.graph().size());
+    statistics.components = map_.graph().components();
+    statistics.rejected = rejected_;
+    for (const GraphEdge& edge : map_.graph().edges()) {
+      if (edge.kind != EdgeKind::kClosure) continue;
+      ++(edge.inter_robot ? statistics.closures_inter : statistics.closures_intra);
+    }
+    return statistics;
+  }
+
+ private:
+  void changed() {
+    ++revision_;
+    snapshot_.reset();
+  }
+
+  void closeLoops(int node, InsertionResult& result) {
+    for (const LoopCandidate& candidate : detector_.detect(map_.graph(), map_.records(), node)) {
+      const ClosureCheck check = verify(candidate);
+      if (check.verdict != ClosureVerdict::kAccepted) {
+        ++rejected_[toString(check.verdict)];
+        ++result.rejected_closures;
+        continue;
+      }
+      admit(makeClosure(candidate, check.alignment), result);
+    }
+  }
+
+  [[nodiscard]] ClosureCheck verify(const LoopCandidate& candidate) {
+    std::optional<RelativePosePrior> prior;
+    if (candidate.located) {
+      prior.emplace();
+      prior->T_target_source =
+          map_.graph().pose(candidate.target).inverse() * map_.graph().pose(candidate.source);
+      prior->covariance =
+          driftCovariance(std::min(candidate.path, 1e3), options_.loop_closure.drift);
+    }
+    return verifier_.verify(plane_sets_.get(map_.records(), candidate.target),
+                            plane_sets_.get(map_.records(), candidate.source), prior);
+  }
+
+  [[nodiscard]] GraphEdge makeClosure(const LoopCandidate& candidate,
+                                      const IcapResult& alignment) const {
+    GraphEdge closure;
+    closure.kind = EdgeKind::kClosure;
+    closure.from = map_.graph().id(candidate.target);
+    closure.to = map_.graph().id(candidate.source);
+    closure.T_from_to = alignment.T_target_source;
+    closure.information = alignment.information;
+    closure.inter_robot = closure.from.robot != closure.to.robot;
+    return closure;
+  }
+
+  void admit(const GraphEdge& closure, InsertionResult& result) {
+    ClosureAdmission admission = consistency_.offer(map_.graph(), closure);
+    if (admission.join) {
+      map_.graph().moveComponent(admission.join->source, admission.join->T_target_source);
+    }
+    for (GraphEdge& accepted : admission.closures) {
+      map_.graph().addEdge(accepted);
+      result.closures.push_back(std::move(accepted));
+    }
+    if (admission.rejected > 0) rejected_["inconsistent_with_closures"] += admission.rejected;
+    if (admission.expired > 0) rejected_["no_witness"] += admission.expired;
+    result.rejected_closures += static_cast<int>(admission.rejected + admission.expired);
+  }
+
+  BackendOptions options_;
+  KeyframeMap map_;
+  SessionLedger sessions_;
+  LoopClosureDetector detector_;
+  ClosureVerifier verifier_;
+  ClosureConsistency consistency_;
+  PlaneSetCache plane_sets_;
+  std::map<std::string, std::size_t> rejected_;
+  std::uint64_t revision_ = 0;
+  std::shared_ptr<const MapSnapshot> snapshot_;  ///< of `revision_`, null until asked for
+};
+
+Backend::Backend(const BackendOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Backend::~Backend() = default;
+Backend::Backend(Backend&&) noexcept = default;
+Backend& Backend::operator=(Backend&&) noexcept = default;
+
+InsertionResult Backend::insert(Keyframe keyframe) { return impl_->insert(std::move(keyframe)); }
+void Backend::optimize() { impl_->optimize(); }
+void Backend::reset() { impl_->reset(); }
+std::shared_ptr<const MapSnapshot> Backend::snapshot() const { return impl_->snapshot(); }
+BackendStatistics Backend::statistics() const { return impl_->statistics(); }
+
+}  // namespace planecloud_slam

@@ -1,0 +1,66 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/closure_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "planecloud_slam/backend_node/drift_model.h"
+
+namespace planecloud_slam {
+
+GraphEdge reversed(const GraphEdge& closure) {
+  GraphEdge result = closure;
+  std::swap(result.from, result.to);
+  result.T_from_to = closure.T_from_to.inverse();
+  result.information = invertRelativePoseInformation(closure.T_from_to, closure.information);
+  return result;
+}
+
+ClosureComparison::ClosureComparison(const PoseGraph& graph, const GraphEdge& closure,
+                                     const DriftOptions& drift)
+    : graph_(graph),
+      closure_(closure),
+      drift_(drift),
+      from_(graph.find(closure.from).value()),
+      to_(graph.find(closure.to).value()),
+      paths_from_(graph.pathLengths(from_)),
+      paths_to_(graph.pathLengths(to_)) {}
+
+double ClosureComparison::longerPath(const GraphEdge& other) const {
+  return std::max(paths_from_[static_cast<std::size_t>(graph_.find(other.from).value())],
+                  paths_to_[static_cast<std::size_t>(graph_.find(other.to).value())]);
+}
+
+double ClosureComparison::loopError(const GraphEdge& other) const {
+  const int from = graph_.find(other.from).value();
+  const int to = graph_.find(other.to).value();
+  const Eigen::Isometry3d T_from_other = graph_.pose(from_).inverse() * graph_.pose(from);
+  const Eigen::Isometry3d T_to_other = graph_.pose(to_).inverse() * graph_.pose(to);
+  const Eigen::Isometry3d predicted = T_from_other.inverse() * closure_.T_from_to * T_to_other;
+  const Matrix6d from_side = adjoint(predicted.inverse());
+  const Matrix6d to_side = adjoint(T_to_other.inverse());
+  const Matrix6d covariance =
+      measurementCovariance(other.information) +
+      to_side * measurementCovariance(closure_.information) * to_side.transpose() +
+      driftCovariance(paths_to_[static_cast<std::size_t>(to)], drift_) +
+      from_side * driftCovariance(paths_from_[static_cast<std::size_t>(from)], drift_) *
+          from_side.transpose();
+  return squaredMahalanobis(logSe3(other.T_from_to.inverse() * predicted), covariance);
+}
+
+ClosureComparison::Result ClosureComparison::compare(const GraphEdge& other) const {
+  const GraphEdge turned = reversed(other);
+  const double straight_path = longerPath(other);
+  const double turned_path = longerPath(turned);
+  const bool turn = turned_path < straight_path;
+  Result result;
+  result.path = std::min(straight_path, turned_path);
+  result.independent = other.from != closure_.from && other.from != closure_.to &&
+                       other.to != closure_.from && other.to != closure_.to;
+  if (std::isfinite(result.path)) result.distance = loopError(turn ? turned : other);
+  return result;
+}
+
+}  // namespace planecloud_slam

@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planecloud_slam/backend_node/loop_closure_options.h"
+#include "planecloud_slam/icap/icap.h"
+
+namespace planecloud_slam {
+
+/// Why an aligned pair is no closure; `kAccepted` when it is one.
+enum class ClosureVerdict {
+  kAccepted,
+  kTooFewPlanes,  ///< nothing to align
+  kDiverged,
+  kUninformative,  ///< more than one direction unobserved
+  kLargeResidual,
+  kLittleOverlap,  ///< tiles that should be visible are not there
+  kSeenThrough,    ///< tiles lie where the other keyframe saw free space
+  kInconsistent,   ///< odometry cannot have drifted that far
+  kAmbiguous,      ///< two different answers are about as well supported
+};
+
+/// Snake-case word for statistics.
+[[nodiscard]] std::string toString(ClosureVerdict verdict);
+
+/// What the graph knows of a pair beforehand.
+struct RelativePosePrior {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Identity();  ///< at the source, see se3.h [m^2, rad^2]
+};
+
+/// An answer to how two keyframes lie to each other, and whether it holds.
+struct ClosureCheck {
+  ClosureVerdict verdict = ClosureVerdict::kTooFewPlanes;
+  IcapResult alignment;
+  double overlap = 0.0;       ///< the smaller of both ways, [0, 1]
+  double seen_through = 0.0;  ///< the larger of both ways, [0, 1]
+};
+
+/// Decides whether two keyframes show the same place (ALGORITHMS 6.2): alignment, residual, overlap
+/// of what should be visible, free space, odometry, a single answer. Precision goes first.
+class ClosureVerifier {
+ public:
+  ClosureVerifier(const ClosureVerificationOptions& options, const IcapOptions& icap)
+      : options_(options), icap_(icap) {}
+
+  /// Aligns from several starts and returns the best supported answer. With a prior the starts
+  /// spread over its uncertainty; without one, over what similar views allow.
+  [[nodiscard]] ClosureCheck verify(const PlaneSet& target, const PlaneSet& source,
+                                    const std::optional<RelativePosePrior>& prior) const;
+
+ private:
+  [[nodiscard]] ClosureCheck align(const PlaneSet& target, const PlaneSet& source,
+                                   const Eigen::Isometry3d& T_target_source_guess) const;
+  [[nodiscard]] ClosureVerdict judge(const ClosureCheck& check, double view) const;
+  [[nodiscard]] bool agrees(const IcapResult& result, const RelativePosePrior& prior) const;
+
+  ClosureVerificationOptions options_;
+  IcapOptions icap_;
+};
+
+/// Starts around a guess: the guess first, then shifts along and across the view and turns about
+/// the camera's vertical, no closer to each other than the basin of the alignment.
+[[nodiscard]] std::vector<Eigen::Isometry3d> alignmentStarts(
+    const std::optional<RelativePosePrior>& prior);
+
+}  // namespace planecloud_slam

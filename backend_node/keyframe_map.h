@@ -1,0 +1,54 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "planecloud_slam/backend_node/backend_options.h"
+#include "planecloud_slam/backend_node/keyframe_record.h"
+#include "planecloud_slam/backend_node/map_snapshot.h"
+#include "planecloud_slam/backend_node/pose_graph.h"
+
+namespace planecloud_slam {
+
+/// The keyframes and their pose graph. Knows where a new keyframe goes, which of its edges have to
+/// wait for keyframes still under way, and how the frame of a component is levelled.
+class KeyframeMap {
+ public:
+  KeyframeMap(const PoseGraphOptions& graph, const MapFrameOptions& frame)
+      : frame_(frame), graph_(graph) {}
+
+  /// Adds a checked keyframe with its decoded planes, its edges and those that waited for it.
+  /// Returns its node number. Throws std::invalid_argument when its id is there already.
+  int add(Keyframe keyframe, std::shared_ptr<const PlaneCloud> planes);
+
+  [[nodiscard]] PoseGraph& graph() { return graph_; }
+  [[nodiscard]] const PoseGraph& graph() const { return graph_; }
+  [[nodiscard]] const KeyframeRecords& records() const { return records_; }
+
+  /// An immutable picture of it all.
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot(std::uint64_t revision) const;
+
+ private:
+  [[nodiscard]] std::optional<int> predecessor(const KeyframeId& id) const;
+  [[nodiscard]] Eigen::Isometry3d initialPose(const Keyframe& keyframe,
+                                              const std::vector<GraphEdge>& edges) const;
+  [[nodiscard]] KeyframeRecord makeRecord(Keyframe keyframe,
+                                          std::shared_ptr<const PlaneCloud> planes) const;
+  void connect(const GraphEdge& edge);
+  void level(int node);
+
+  MapFrameOptions frame_;
+  PoseGraph graph_;
+  KeyframeRecords records_;
+  std::map<KeyframeId, int> by_session_;                  ///< ordered by robot, session, number
+  std::map<KeyframeId, std::vector<GraphEdge>> waiting_;  ///< by the end that has not arrived
+  std::set<KeyframeId> levelled_;  ///< oldest keyframes of components that have found their floor
+};
+
+}  // namespace planecloud_slam

@@ -1,0 +1,21 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "planecloud_slam/backend_node/map_snapshot.h"
+
+namespace planecloud_slam {
+
+/// A keyframe of the map and how far its session had come.
+struct KeyframeRecord {
+  std::shared_ptr<const MapKeyframe> keyframe;
+  double path = 0.0;  ///< of its session up to it, by odometry, see motionLength [m]
+};
+
+/// All keyframes, numbered as the nodes of the pose graph.
+using KeyframeRecords = std::vector<KeyframeRecord>;
+
+}  // namespace planecloud_slam

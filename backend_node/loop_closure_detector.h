@@ -1,0 +1,49 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "planecloud_slam/backend_node/keyframe_record.h"
+#include "planecloud_slam/backend_node/loop_closure_options.h"
+#include "planecloud_slam/backend_node/pose_graph.h"
+
+namespace planecloud_slam {
+
+/// A pair of keyframes that may show the same place.
+struct LoopCandidate {
+  int target = 0;        ///< node number of the older keyframe
+  int source = 0;        ///< node number of the newer keyframe
+  bool located = false;  ///< both in one component: their relative pose is known roughly
+  double path = 0.0;     ///< of measurements between them when located, see motionLength [m]
+};
+
+/// Proposes loop closures (ALGORITHMS 6.1): by position inside a component, by appearance and by
+/// the frontend's hints elsewhere. Proposing is cheap and generous, see ClosureVerifier.
+class LoopClosureDetector {
+ public:
+  LoopClosureDetector(const LoopCandidateOptions& options, const DriftOptions& drift)
+      : options_(options), drift_(drift) {}
+
+  /// Candidates for keyframe `source`, best first, located ones before the others. No pair twice.
+  [[nodiscard]] std::vector<LoopCandidate> detect(const PoseGraph& graph,
+                                                  const KeyframeRecords& records, int source) const;
+
+ private:
+  struct Query {
+    const PoseGraph& graph;
+    const KeyframeRecords& records;
+    int source;
+    std::vector<double> paths;  ///< to every node [m]
+  };
+
+  [[nodiscard]] bool isRevisit(const Query& query, int target) const;
+  [[nodiscard]] std::vector<LoopCandidate> near(const Query& query) const;
+  [[nodiscard]] std::vector<LoopCandidate> alike(const Query& query) const;
+  void addHints(const Query& query, std::vector<LoopCandidate>& candidates) const;
+
+  LoopCandidateOptions options_;
+  DriftOptions drift_;
+};
+
+}  // namespace planecloud_slam

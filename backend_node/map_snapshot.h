@@ -1,0 +1,54 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "planecloud_slam/plane_fit/keyframe.h"
+#include "planecloud_slam/plane_fit/plane_cloud.h"
+
+namespace planecloud_slam {
+
+enum class EdgeKind {
+  kOdometry,  ///< to the previous keyframe, from the frontend
+  kHistory,   ///< to an earlier keyframe, from the frontend
+  kClosure,   ///< found and verified by the backend
+};
+
+/// An edge of the graph as others see it.
+struct GraphEdge {
+  EdgeKind kind = EdgeKind::kOdometry;
+  KeyframeId from;
+  KeyframeId to;
+  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< at `to`; see se3.h
+  bool inter_robot = false;
+};
+
+/// A keyframe of the map. Shared between snapshots: only poses change from one to the next.
+struct MapKeyframe {
+  KeyframeId id;
+  double stamp = 0.0;
+  Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
+  std::shared_ptr<const Keyframe> keyframe;  ///< as received (encoded planes, texture)
+  std::shared_ptr<const PlaneCloud> planes;  ///< decoded
+};
+
+/// The map at one moment, immutable: publishers read it while the backend goes on.
+struct MapSnapshot {
+  struct Node {
+    std::shared_ptr<const MapKeyframe> keyframe;
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    int component = 0;  ///< connected component, 0 = the oldest
+  };
+  std::uint64_t revision = 0;  ///< grows with every change
+  std::vector<Node> nodes;     ///< ordered by id
+  std::vector<GraphEdge> edges;
+  int components = 0;
+};
+
+}  // namespace planecloud_slam

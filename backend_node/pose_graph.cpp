@@ -1,0 +1,170 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/pose_graph.h"
+
+#include <Eigen/Eigenvalues>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <stdexcept>
+#include <utility>
+
+#include "planecloud_slam/backend_node/drift_model.h"
+#include "planecloud_slam/backend_node/pose_graph_solver.h"
+#include "planecloud_slam/backend_node/relative_pose_cost.h"
+
+namespace planecloud_slam {
+namespace {
+
+/// A direction counts as observed from this information on [1/m^2, 1/rad^2]: 0.1 m, 0.1 rad.
+constexpr double kObserved = 100.0;
+
+bool observesEverything(const Matrix6d& information) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(information, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() >= kObserved;
+}
+
+std::size_t index(int number) { return static_cast<std::size_t>(number); }
+
+}  // namespace
+
+PoseGraph::PoseGraph(const PoseGraphOptions& options) : options_(options) { options_.check(); }
+
+int PoseGraph::addNode(const KeyframeId& id, const Eigen::Isometry3d& T_map_camera) {
+  if (!numbers_.emplace(id, size()).second) {
+    throw std::invalid_argument("keyframe " + toString(id) + " is in the graph already");
+  }
+  nodes_.push_back({id, T_map_camera, components_++});
+  return size() - 1;
+}
+
+void PoseGraph::addEdge(const GraphEdge& edge) {
+  const std::optional<int> from = find(edge.from);
+  const std::optional<int> to = find(edge.to);
+  if (!from || !to || *from == *to) {
+    throw std::invalid_argument("edge " + toString(edge.from) + " to " + toString(edge.to) +
+                                ": add both keyframes first, and not one to itself");
+  }
+  // Odometry is a way even when the frontend is modest about it: nothing else bounds the drift.
+  const bool complete = edge.kind == EdgeKind::kOdometry || observesEverything(edge.information);
+  edges_.push_back(edge);
+  ends_.push_back({*from, *to, motionLength(edge.T_from_to), complete});
+  if (component(*from) != component(*to)) renumberComponents();
+}
+
+std::optional<int> PoseGraph::find(const KeyframeId& id) const {
+  const auto found = numbers_.find(id);
+  if (found == numbers_.end()) return std::nullopt;
+  return found->second;
+}
+
+void PoseGraph::moveComponent(int component, const Eigen::Isometry3d& T_new_old) {
+  for (Node& node : nodes_) {
+    if (node.component == component) node.T_map_camera = T_new_old * node.T_map_camera;
+  }
+}
+
+std::vector<std::vector<int>> PoseGraph::adjacency() const {
+  std::vector<std::vector<int>> edges_of(nodes_.size());
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    edges_of[index(ends_[i].from)].push_back(static_cast<int>(i));
+    edges_of[index(ends_[i].to)].push_back(static_cast<int>(i));
+  }
+  return edges_of;
+}
+
+void PoseGraph::renumberComponents() {
+  const std::vector<std::vector<int>> edges_of = adjacency();
+  for (Node& node : nodes_) node.component = -1;
+  components_ = 0;
+  for (int root = 0; root < size(); ++root) {
+    if (component(root) >= 0) continue;
+    std::vector<int> open{root};
+    nodes_[index(root)].component = components_;
+    while (!open.empty()) {
+      const int node = open.back();
+      open.pop_back();
+      for (const int e : edges_of[index(node)]) {
+        const Ends& ends = ends_[index(e)];
+        const int next = ends.from == node ? ends.to : ends.from;
+        if (component(next) >= 0) continue;
+        nodes_[index(next)].component = components_;
+        open.push_back(next);
+      }
+    }
+    ++components_;
+  }
+}
+
+std::vector<double> PoseGraph::pathLengths(int node) const {
+  const std::vector<std::vector<int>> edges_of = adjacency();
+  std::vector<double> lengths(nodes_.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  lengths.at(index(node)) = 0.0;
+  open.emplace(0.0, node);
+  while (!open.empty()) {
+    const auto [length, current] = open.top();
+    open.pop();
+    if (length > lengths[index(current)]) continue;
+    for (const int e : edges_of[index(current)]) {
+      const Ends& ends = ends_[index(e)];
+      if (!ends.complete) continue;
+      const int next = ends.from == current ? ends.to : ends.from;
+      if (length + ends.length >= lengths[index(next)]) continue;
+      lengths[index(next)] = length + ends.length;
+      open.emplace(lengths[index(next)], next);
+    }
+  }
+  return lengths;
+}
+
+double PoseGraph::squaredError(const GraphEdge& edge) const {
+  const RelativePoseCost cost(edge.T_from_to, edge.information);
+  return cost.residual(pose(numbers_.at(edge.from)), pose(numbers_.at(edge.to))).squaredNorm();
+}
+
+std::optional<std::size_t> PoseGraph::worstClosure() const {
+  std::optional<std::size_t> worst;
+  double worst_error = options_.removal_distance;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (edges_[i].kind != EdgeKind::kClosure) continue;
+    const double error = squaredError(edges_[i]);
+    if (error <= worst_error) continue;
+    worst_error = error;
+    worst = i;
+  }
+  return worst;
+}
+
+void PoseGraph::solve(OptimisationSummary& summary) {
+  PoseGraphProblem problem;
+  std::vector<bool> has_root(index(components_), false);
+  for (const Node& node : nodes_) {
+    problem.poses.push_back(node.T_map_camera);
+    problem.fixed.push_back(!has_root[index(node.component)]);
+    has_root[index(node.component)] = true;
+  }
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    problem.edges.push_back({ends_[i].from, ends_[i].to, &edges_[i]});
+  }
+  solvePoseGraph(options_, problem, summary);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].T_map_camera = problem.poses[i];
+}
+
+OptimisationSummary PoseGraph::optimize() {
+  OptimisationSummary summary;
+  if (edges_.empty()) return summary;
+  solve(summary);
+  while (const std::optional<std::size_t> worst = worstClosure()) {
+    const auto offset = static_cast<std::ptrdiff_t>(*worst);
+    summary.removed.push_back(edges_[*worst]);
+    edges_.erase(edges_.begin() + offset);
+    ends_.erase(ends_.begin() + offset);
+    renumberComponents();
+    solve(summary);
+  }
+  return summary;
+}
+
+}  // namespace planecloud_slam

@@ -1,0 +1,86 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "planecloud_slam/backend_node/backend_options.h"
+#include "planecloud_slam/backend_node/map_snapshot.h"
+
+namespace planecloud_slam {
+
+/// What an optimisation did.
+struct OptimisationSummary {
+  int iterations = 0;
+  double initial_cost = 0.0;  ///< half the sum of squared residuals, robust kernel applied
+  double final_cost = 0.0;
+  std::vector<GraphEdge> removed;  ///< closures found false and taken out
+};
+
+/// Poses of keyframes and the measurements between them (paper sec. 3.1). Nodes are numbered in the
+/// order of arrival; connected components are numbered by their oldest node, whose pose is fixed in
+/// optimisations, so each component keeps its own frame. Deterministic with one thread.
+class PoseGraph {
+ public:
+  /// Throws std::invalid_argument when `options` fail their check.
+  explicit PoseGraph(const PoseGraphOptions& options);
+
+  /// Returns the new node's number. Throws std::invalid_argument when `id` is there already.
+  int addNode(const KeyframeId& id, const Eigen::Isometry3d& T_map_camera);
+  /// Throws std::invalid_argument when an end is missing or both are the same node.
+  void addEdge(const GraphEdge& edge);
+
+  [[nodiscard]] std::optional<int> find(const KeyframeId& id) const;
+  [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
+  [[nodiscard]] const KeyframeId& id(int node) const { return at(node).id; }
+  [[nodiscard]] const Eigen::Isometry3d& pose(int node) const { return at(node).T_map_camera; }
+  [[nodiscard]] int component(int node) const { return at(node).component; }
+  [[nodiscard]] int components() const { return components_; }
+  [[nodiscard]] const std::vector<GraphEdge>& edges() const { return edges_; }
+
+  /// Moves every pose of a component: `T_map_camera <- T_new_old * T_map_camera`.
+  void moveComponent(int component, const Eigen::Isometry3d& T_new_old);
+
+  /// Length of the shortest path of measurements from `node` to every node (see motionLength), in
+  /// order of nodes [m]; infinite between components. Edges that leave a direction unobserved are
+  /// no way.
+  [[nodiscard]] std::vector<double> pathLengths(int node) const;
+
+  /// Squared Mahalanobis distance between an edge of the graph and the present poses.
+  [[nodiscard]] double squaredError(const GraphEdge& edge) const;
+
+  /// Optimises all components; a closure that then disagrees by more than `removal_distance`
+  /// leaves, the worst first, each time followed by another optimisation.
+  OptimisationSummary optimize();
+
+ private:
+  struct Node {
+    KeyframeId id;
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    int component = 0;
+  };
+  struct Ends {
+    int from = 0;
+    int to = 0;
+    double length = 0.0;   ///< see motionLength [m]
+    bool complete = true;  ///< observes all six directions
+  };
+
+  [[nodiscard]] const Node& at(int node) const { return nodes_.at(static_cast<std::size_t>(node)); }
+  [[nodiscard]] std::vector<std::vector<int>> adjacency() const;
+  void renumberComponents();
+  void solve(OptimisationSummary& summary);
+  [[nodiscard]] std::optional<std::size_t> worstClosure() const;
+
+  PoseGraphOptions options_;
+  std::vector<Node> nodes_;
+  std::map<KeyframeId, int> numbers_;
+  std::vector<GraphEdge> edges_;
+  std::vector<Ends> ends_;  ///< of `edges_`, same order
+  int components_ = 0;
+};
+
+}  // namespace planecloud_slam

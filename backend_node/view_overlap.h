@@ -1,0 +1,17 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "planecloud_slam/plane_fit/plane_cloud.h"
+
+namespace planecloud_slam {
+
+/// Share of `source`'s tiles, by pixels, whose centres fall into `target`'s image and face its
+/// camera, and the other way round: the smaller of both, [0, 1]. Ignores occlusion and lens
+/// distortion: a cheap prediction of whether two keyframes can be aligned.
+[[nodiscard]] double mutualViewOverlap(const PlaneCloud& target, const PlaneCloud& source,
+                                       const Eigen::Isometry3d& T_target_source);
+
+}  // namespace planecloud_slam
