@@ -7,7 +7,7 @@
 namespace planecloud_slam {
 
 /// Depths outside this range [m] are taken for missing.
-inline constexpr float kMinDepth = 1e-3F;
+inline constexpr float kMinDepth = 0.05F;
 inline constexpr float kMaxDepth = 1e3F;
 
 /// How a pixel of a depth image is read (REP 118).
@@ -28,7 +28,7 @@ template <>
 struct DepthTraits<std::uint16_t> {
   /// Inverse depth [1/m]; 0 where there is none.
   [[nodiscard]] static float inverse(std::uint16_t depth) {
-    return depth != 0 ? 1000.0F / static_cast<float>(depth) : 0.0F;
+    return depth >= 50 ? 1000.0F / static_cast<float>(depth) : 0.0F;
   }
 };
 

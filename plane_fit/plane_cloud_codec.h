@@ -13,7 +13,7 @@ namespace planecloud_slam {
 /// Options of `encode`, keys below `codec/`.
 struct CodecOptions {
   PlaneCloudEncoding encoding = PlaneCloudEncoding::kCompact;
-  /// Step of the inverse depth at a tile's centre [1/m], [1e-5, 0.05], kept to 1e-5 (COMPACT).
+  /// Step of the inverse depth at a tile's centre [1/m], [1e-4, 0.05], kept to 1e-5 (COMPACT).
   double quantisation_step = 1e-3;
   int byte_budget = 0;  ///< the stream never exceeds it [B], 0: none, else [64, 2^30]
 

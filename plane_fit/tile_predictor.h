@@ -1,0 +1,54 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "planecloud_slam/plane_fit/tile_quantiser.h"
+
+namespace planecloud_slam {
+
+/// What the tiles coded so far say about the next one. Integers only.
+class TilePredictor {
+ public:
+  static constexpr int kMaxNeighbors = 8;
+
+  /// A neighbour's plane continued to the node at hand.
+  struct Candidates {
+    int count = 0;
+    std::array<QuantisedPlane, kMaxNeighbors> planes;
+  };
+
+  explicit TilePredictor(const QuadtreeGrid& grid);
+
+  /// From now on `node` is a tile with this plane.
+  void place(const QuadtreeNode& node, const QuantisedPlane& plane);
+
+  /// A tile covers the cell left of, above, right of, below the node's middle: bits 0 to 3.
+  [[nodiscard]] unsigned coveredSides(const QuadtreeNode& node) const;
+  /// The tiles around a node, side neighbours first, each continued to the node's centre.
+  [[nodiscard]] Candidates candidates(const QuadtreeNode& node) const;
+
+  /// Median of the candidates' centres; the last centre placed when there is no neighbour.
+  [[nodiscard]] std::int32_t predictCenter(const Candidates& candidates) const;
+  /// Largest minus smallest of the candidates' centres, -1 for fewer than two.
+  [[nodiscard]] std::int32_t spread(const Candidates& candidates) const;
+  /// Slopes of the candidate that comes nearest to `center`; flat when there is none.
+  [[nodiscard]] QuantisedPlane predictSlopes(const Candidates& candidates,
+                                             std::int32_t center) const;
+
+ private:
+  struct Placed {
+    TileRect rect;
+    QuantisedPlane plane;
+  };
+  [[nodiscard]] const Placed* at(int cell_column, int cell_row) const;
+
+  const QuadtreeGrid& grid_;
+  std::vector<std::int32_t> owner_;  // of each cell: index into placed_, -1: none
+  std::vector<Placed> placed_;
+};
+
+}  // namespace planecloud_slam
