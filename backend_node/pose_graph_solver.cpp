@@ -146,6 +146,10 @@ ceres::Solver::Options solverOptions(const PoseGraphOptions& options) {
   result.max_num_iterations = options.max_iterations;
   result.num_threads = options.threads;
   result.function_tolerance = 1e-8;
+  // Ceres' own damping is so weak that rounding errors drive the poses far along directions without
+  // information. All other columns are scaled to about one, so this leaves them alone.
+  result.min_lm_diagonal = 1.0;
+  result.max_trust_region_radius = 1e6;
   result.logging_type = ceres::SILENT;
   return result;
 }
@@ -181,7 +185,9 @@ void solvePoseGraph(const PoseGraphOptions& options, PoseGraphProblem& problem,
   summary.initial_cost = report.initial_cost;
   summary.final_cost = report.final_cost;
   if (!report.IsSolutionUsable()) return;
-  for (std::size_t i = 0; i < blocks.size(); ++i) problem.poses[i] = toPose(blocks[i].data());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!problem.fixed[i]) problem.poses[i] = toPose(blocks[i].data());
+  }
 }
 
 }  // namespace planecloud_slam
