@@ -13,7 +13,8 @@ catkin_destinations()
 
 # genmsg installs the whole of devel/include/planecloud_slam, the links to the component folders
 # included; installed links would lead back into the source. They go before (a folder from an
-# earlier installation stands in a link's way) and after, then headers.cmake installs the headers.
+# earlier installation stands in a link's way) and after, then the root
+# CMakeLists.txt installs the headers.
 macro(planecloud_slam_uninstall_component_folders)
   foreach(component IN LISTS PLANECLOUD_SLAM_COMPONENTS)
     install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CATKIN_PACKAGE_INCLUDE_DESTINATION}/${component}\")")

@@ -1,0 +1,109 @@
+# Copyright (c) 2026, the planecloud_slam authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Sourced by demo and test: installs what is missing, finds or makes the catkin workspace, builds.
+
+set -euo pipefail
+
+checkout="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
+
+# Another python3 may come first in PATH; catkin needs the system's.
+export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"
+export LC_ALL=C.UTF-8
+export USER="${USER:-$(id -un)}"
+export ROS_HOSTNAME="${ROS_HOSTNAME:-localhost}"
+export ROS_MASTER_URI="${ROS_MASTER_URI:-http://localhost:11311}"
+jobs="${JOBS:-$(nproc)}"
+
+say() { printf '\n== %s\n' "$*"; }
+fail() {
+  printf 'error: %s\n' "$*" >&2
+  exit 1
+}
+
+# Tags of the dependencies to look for in package.xml -> the keys in them.
+package_keys() {
+  sed -nE "s@.*<($1)>([^<]+)</.*@\2@p" "$checkout/package.xml" | sort -u
+}
+
+debian_packages() {
+  local key names
+  for key in $(package_keys "$1"); do
+    names="$(sed -nE "s/^$key +//p" "$checkout/scripts/debian_packages")"
+    [ -n "$names" ] || fail "scripts/debian_packages has no line for '$key' of package.xml"
+    printf '%s\n' $names
+  done | sort -u
+}
+
+missing_packages() {
+  local name
+  for name in $(debian_packages "$1"); do
+    dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null | grep -qx installed || echo "$name"
+  done
+}
+
+# Installs the packages for the given tags of package.xml.
+install_packages() {
+  if ! command -v dpkg-query >/dev/null || ! grep -qs 'VERSION_ID="12"' /etc/os-release; then
+    command -v catkin_make >/dev/null ||
+      fail "this is not Debian 12: install what package.xml names (rosdep install --from-paths $checkout)"
+    return 0
+  fi
+  local missing sudo=()
+  missing="$(missing_packages "$1")"
+  [ -n "$missing" ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || fail "as root: apt-get install --no-install-recommends" $missing
+    sudo=(sudo)
+  fi
+  say "Installing $(wc -w <<<"$missing") packages"
+  "${sudo[@]}" apt-get -q -o DPkg::Lock::Timeout=600 update
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600 \
+    -o Dpkg::Use-Pty=0 install --no-install-recommends $missing
+}
+
+# The workspace that already has the checkout in its src folder, else .workspace in the checkout.
+find_workspace() {
+  local folder="$checkout"
+  while [ "$folder" != / ]; do
+    folder="$(dirname "$folder")"
+    if [ -e "$folder/.catkin_workspace" ] && [[ "$checkout" == "$folder/src/"* ]]; then
+      echo "$folder"
+      return
+    fi
+  done
+  echo "$checkout/.workspace"
+}
+
+make_workspace() {
+  workspace="$(find_workspace)"
+  mkdir -p "$workspace/src"
+  if [ "$workspace" = "$checkout/.workspace" ]; then
+    touch "$workspace/CATKIN_IGNORE" "$workspace/.catkin_workspace"
+    ln -sfn ../.. "$workspace/src/planecloud_slam"
+  fi
+  # Logs stay out of the home folder, which may be missing.
+  export ROS_HOME="${ROS_HOME:-$workspace/.ros}"
+}
+
+# Builds targets (all without one) quietly; shows the log when that fails.
+build() {
+  local log="$workspace/build.log" flags=()
+  if [ "${WERROR:-0}" = 1 ]; then flags+=(-DPLANECLOUD_SLAM_WERROR=ON); fi
+  if ! catkin_make -C "$workspace" --no-color "-j$jobs" -DCMAKE_BUILD_TYPE=Release \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
+    "${flags[@]}" "$@" >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    fail "the build failed; all of it is in $log"
+  fi
+}
+
+# The workspace's environment, for rosrun and roslaunch.
+enter_workspace() {
+  set +u
+  # shellcheck disable=SC1091
+  source "$workspace/devel/setup.bash"
+  set -u
+}
+
+trap 'printf "error: %s: line %s failed\n" "${0##*/}" "$LINENO" >&2' ERR
