@@ -1,0 +1,167 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/map_export.h"
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/conversions.h>
+#include <pcl/io/ply_io.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "planecloud_slam/backend_node/robot_colors.h"
+#include "planecloud_slam/backend_node/tile_corners.h"
+
+namespace planecloud_slam {
+namespace {
+
+/// `%.9g` keeps all digits of the float32 that information travels as.
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.9g", value);
+  return text;
+}
+
+std::string poseText(const Eigen::Isometry3d& T) {
+  const Eigen::Vector3d t = T.translation();
+  Eigen::Quaterniond q(T.linear());
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  char text[192];
+  std::snprintf(text, sizeof(text), "%.6f %.6f %.6f %.7f %.7f %.7f %.7f", t.x(), t.y(), t.z(),
+                q.x(), q.y(), q.z(), q.w());
+  return text;
+}
+
+std::string edgeText(const GraphEdge& edge, const std::map<KeyframeId, std::size_t>& vertices) {
+  Vector6d scale;
+  scale << 1.0, 1.0, 1.0, 2.0, 2.0, 2.0;
+  const Matrix6d information = scale.asDiagonal() * edge.information * scale.asDiagonal();
+  std::string text = "EDGE_SE3:QUAT " + std::to_string(vertices.at(edge.from)) + " " +
+                     std::to_string(vertices.at(edge.to)) + " " + poseText(edge.T_from_to);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) text += " " + number(information(row, column));
+  }
+  return text + "\n";
+}
+
+class PlaneMesh {
+ public:
+  void add(const MapSnapshot::Node& node, const RobotColor& color) {
+    const PlaneCloud& planes = *node.keyframe->planes;
+    if (!camera_ || camera_->intrinsics() != planes.camera) camera_.emplace(planes.camera);
+    for (const PlanarTile& tile : planes.tiles) {
+      const auto corners = tileCorners(*camera_, tile);
+      if (!corners) continue;
+      pcl::Vertices quadrilateral;
+      for (const Eigen::Vector3d& corner : *corners) {
+        quadrilateral.vertices.push_back(
+            static_cast<decltype(quadrilateral.vertices)::value_type>(vertices_.size()));
+        vertices_.push_back(vertexAt(node.T_map_camera * corner, color));
+      }
+      mesh_.polygons.push_back(std::move(quadrilateral));
+    }
+  }
+
+  void write(const std::string& path) {
+    pcl::toPCLPointCloud2(vertices_, mesh_.cloud);
+    if (pcl::io::savePLYFileBinary(path, mesh_) != 0) {
+      throw std::runtime_error("cannot write plane map '" + path + "'");
+    }
+  }
+
+ private:
+  static pcl::PointXYZRGB vertexAt(const Eigen::Vector3d& point, const RobotColor& color) {
+    pcl::PointXYZRGB vertex(color.r, color.g, color.b);
+    vertex.getVector3fMap() = point.cast<float>();
+    return vertex;
+  }
+
+  std::optional<Camera> camera_;  ///< of the keyframe last added
+  pcl::PointCloud<pcl::PointXYZRGB> vertices_;
+  pcl::PolygonMesh mesh_;
+};
+
+/// Robot names may be namespaces.
+std::string fileName(std::string robot) {
+  std::replace(robot.begin(), robot.end(), '/', '_');
+  return robot;
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error("cannot write '" + path + "'");
+}
+
+}  // namespace
+
+std::string tumLine(double stamp, const Eigen::Isometry3d& T) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6f", stamp);
+  return text + (" " + poseText(T));
+}
+
+std::string trajectoryText(const MapSnapshot& snapshot, const std::string& robot) {
+  std::vector<const MapSnapshot::Node*> nodes;
+  for (const MapSnapshot::Node& node : snapshot.nodes) {
+    if (node.keyframe->id.robot == robot) nodes.push_back(&node);
+  }
+  std::stable_sort(nodes.begin(), nodes.end(), [](const auto* a, const auto* b) {
+    return a->keyframe->stamp < b->keyframe->stamp;
+  });
+  std::string text = "# stamp tx ty tz qx qy qz qw\n";
+  int component = -1;
+  for (const MapSnapshot::Node* node : nodes) {
+    if (node->component != component) {
+      component = node->component;
+      text += "# component " + std::to_string(component) + "\n";
+    }
+    text += tumLine(node->keyframe->stamp, node->T_map_camera) + "\n";
+  }
+  return text;
+}
+
+std::string g2oText(const MapSnapshot& snapshot) {
+  std::string text;
+  std::map<KeyframeId, std::size_t> vertices;
+  std::set<int> fixed;
+  for (std::size_t i = 0; i < snapshot.nodes.size(); ++i) {
+    const MapSnapshot::Node& node = snapshot.nodes[i];
+    vertices.emplace(node.keyframe->id, i);
+    text += "VERTEX_SE3:QUAT " + std::to_string(i) + " " + poseText(node.T_map_camera) + "\n";
+    if (fixed.insert(node.component).second) text += "FIX " + std::to_string(i) + "\n";
+  }
+  for (const GraphEdge& edge : snapshot.edges) text += edgeText(edge, vertices);
+  return text;
+}
+
+void writePlaneMap(const std::string& path, const MapSnapshot& snapshot) {
+  const std::map<std::string, RobotColor> colors = robotColors(snapshot);
+  PlaneMesh mesh;
+  for (const MapSnapshot::Node& node : snapshot.nodes) {
+    mesh.add(node, colors.at(node.keyframe->id.robot));
+  }
+  mesh.write(path);
+}
+
+std::vector<std::string> exportMap(const std::string& directory, const MapSnapshot& snapshot) {
+  std::vector<std::string> paths{directory + "/map.ply", directory + "/graph.g2o"};
+  writeText(paths[1], g2oText(snapshot));
+  writePlaneMap(paths[0], snapshot);
+  for (const auto& [robot, color] : robotColors(snapshot)) {
+    paths.push_back(directory + "/" + fileName(robot) + "_keyframes.txt");
+    writeText(paths.back(), trajectoryText(snapshot, robot));
+  }
+  return paths;
+}
+
+}  // namespace planecloud_slam
