@@ -8,6 +8,7 @@ set(PLANECLOUD_SLAM_CATKIN_DEPENDS
   cv_bridge diagnostic_msgs geometry_msgs image_transport message_filters nav_msgs
   rosbag roscpp sensor_msgs std_msgs std_srvs tf2 tf2_eigen tf2_msgs tf2_ros visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS message_generation ${PLANECLOUD_SLAM_CATKIN_DEPENDS})
+include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
 catkin_destinations()
 
@@ -15,6 +16,7 @@ catkin_destinations()
 # included; installed links would lead back into the source. They go before (a folder from an
 # earlier installation stands in a link's way) and after, then the root
 # CMakeLists.txt installs the headers.
+#catkin_lint: ignore env_var
 macro(planecloud_slam_uninstall_component_folders)
   foreach(component IN LISTS PLANECLOUD_SLAM_COMPONENTS)
     install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CATKIN_PACKAGE_INCLUDE_DESTINATION}/${component}\")")
@@ -44,7 +46,8 @@ generate_messages(DEPENDENCIES std_msgs)
 planecloud_slam_uninstall_component_folders()
 
 catkin_package(
-  INCLUDE_DIRS ${CATKIN_DEVEL_PREFIX}/include
   LIBRARIES ${PROJECT_NAME}_conversions ${PROJECT_NAME}_icap ${PROJECT_NAME}_plane_fit
-  CATKIN_DEPENDS geometry_msgs message_runtime roscpp sensor_msgs std_msgs std_srvs
+  CATKIN_DEPENDS
+    diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp sensor_msgs std_msgs std_srvs
+    tf2_msgs visualization_msgs
   DEPENDS EIGEN3)
