@@ -95,9 +95,8 @@ void PlanePreviewPublisher::publish(TrackedFrame tracked) {
   if (markers_.getNumSubscribers() == 0) return;
 
   visualization_msgs::MarkerArray markers;
-  markers.markers.push_back(makeTriangleMarker(
-      tileTriangles(decode(fitted.planes), Camera(tracked.camera), kMaxMarkerDepth),
-      previewColor()));
+  markers.markers.push_back(
+      makeTriangleMarker(tileTriangles(decode(fitted.planes), kMaxMarkerDepth), previewColor()));
   markers.markers.back().header = message.header;
   markers.markers.back().ns = "planes";
   markers_.publish(markers);

@@ -6,43 +6,31 @@
 #include <array>
 #include <utility>
 
+#include "planecloud_slam/plane_fit/reconstruction.h"
+
 namespace planecloud_slam {
 namespace {
 
-using Corners = std::array<geometry_msgs::Point, 4>;
-
-geometry_msgs::Point cornerOf(const PlanarTile& tile, const Camera& camera, int x, int y) {
-  const float u = camera.tangentsX()(x, y);
-  const float v = camera.tangentsY()(x, y);
-  geometry_msgs::Point point;
-  point.z = tile.depthAt(u, v);
-  point.x = u * point.z;
-  point.y = v * point.z;
-  return point;
-}
-
-/// In the order of a walk around the tile. Neighbours share their corners.
-Corners cornersOf(const PlanarTile& tile, const Camera& camera) {
-  const int right = std::min(tile.rect.x + tile.rect.width, camera.width() - 1);
-  const int bottom = std::min(tile.rect.y + tile.rect.height, camera.height() - 1);
-  return {cornerOf(tile, camera, tile.rect.x, tile.rect.y),
-          cornerOf(tile, camera, tile.rect.x, bottom), cornerOf(tile, camera, right, bottom),
-          cornerOf(tile, camera, right, tile.rect.y)};
+geometry_msgs::Point toPoint(const Eigen::Vector3d& point) {
+  geometry_msgs::Point message;
+  message.x = point.x();
+  message.y = point.y();
+  message.z = point.z();
+  return message;
 }
 
 }  // namespace
 
-std::vector<geometry_msgs::Point> tileTriangles(const PlaneCloud& cloud, const Camera& camera,
-                                                double max_depth) {
+std::vector<geometry_msgs::Point> tileTriangles(const PlaneCloud& cloud, double max_depth) {
   std::vector<geometry_msgs::Point> triangles;
   triangles.reserve(6 * cloud.tiles.size());
   for (const PlanarTile& tile : cloud.tiles) {
-    const Corners corners = cornersOf(tile, camera);
+    const std::array<Eigen::Vector3d, 4> corners = tileCorners(tile, cloud.camera);
     const bool is_near = std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
-      return corner.z > 0.0 && corner.z <= max_depth;
+      return corner.z() > 0.0 && corner.z() <= max_depth;
     });
     if (!is_near) continue;
-    for (const std::size_t i : {0, 1, 2, 0, 2, 3}) triangles.push_back(corners[i]);
+    for (const std::size_t i : {0, 3, 2, 0, 2, 1}) triangles.push_back(toPoint(corners[i]));
   }
   return triangles;
 }

@@ -8,15 +8,13 @@
 
 #include <vector>
 
-#include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
 namespace planecloud_slam {
 
-/// Two triangles for each tile of `cloud`, three points each [m], in the optical frame of `camera`,
-/// which must be that of the cloud. Tiles that reach beyond `max_depth` [m] are left out.
+/// Two triangles for each tile of `cloud`, three points each [m], in its optical frame, front sides
+/// towards the camera. Tiles that reach beyond `max_depth` [m] are left out.
 [[nodiscard]] std::vector<geometry_msgs::Point> tileTriangles(const PlaneCloud& cloud,
-                                                              const Camera& camera,
                                                               double max_depth);
 
 /// A marker with identity pose and scale for `triangles`; header and id are the caller's.

@@ -1,0 +1,123 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/keyframe_receiver.h"
+
+#include <utility>
+
+#include "planecloud_slam/planecloud_msgs/conversions.h"
+#include "planecloud_slam/planecloud_msgs/robot_name.h"
+
+namespace planecloud_slam {
+namespace {
+
+/// Without limit: the backend drops nothing.
+constexpr std::uint32_t kSubscriberQueue = 0;
+constexpr std::uint32_t kAckQueue = 10;
+/// Least time between two acknowledgements [s].
+constexpr double kAckInterval = 0.1;
+
+KeyframeAckMessage toMessage(const SessionReceipt& receipt) {
+  KeyframeAckMessage message;
+  message.robot = receipt.robot;
+  message.session = receipt.session;
+  message.highest_without_gap = receipt.highest_without_gap;
+  message.highest = receipt.highest;
+  message.gaps = receipt.gaps;
+  return message;
+}
+
+}  // namespace
+
+KeyframeReceiver::KeyframeReceiver(const ros::NodeHandle& node, const BackendNodeOptions& options,
+                                   OnKeyframe on_keyframe)
+    : backend_id_(options.backend_id.empty() ? ros::this_node::getName() : options.backend_id),
+      ack_period_(options.ack_period),
+      on_keyframe_(std::move(on_keyframe)) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::vector<std::string> name_spaces = splitWords(options.robots);
+  for (const std::string& name_space : name_spaces) listen(node, name_space);
+  if (name_spaces.empty()) listen(node, "");
+  timer_ = ros::NodeHandle(node).createWallTimer(
+      ros::WallDuration(kAckInterval), [this](const ros::WallTimerEvent&) { acknowledgeAll(); });
+}
+
+void KeyframeReceiver::listen(ros::NodeHandle node, const std::string& name_space) {
+  const std::string prefix = name_space.empty() ? "" : name_space + "/";
+  auto source = std::make_unique<Source>();
+  const std::size_t index = sources_.size();
+  source->name_space = name_space;
+  source->acks = node.advertise<KeyframeAckMessage>(prefix + "keyframe_acks", kAckQueue);
+  source->keyframes = node.subscribe<KeyframeMessage>(
+      prefix + "keyframes", kSubscriberQueue,
+      [this, index](const KeyframeMessage::ConstPtr& message) { onMessage(*message, index); },
+      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+  ROS_INFO_STREAM("listening to " << source->keyframes.getTopic());
+  sources_.push_back(std::move(source));
+}
+
+void KeyframeReceiver::onMessage(const KeyframeMessage& message, std::size_t source) {
+  Keyframe keyframe;
+  try {
+    keyframe = fromMessage(message);
+  } catch (const MessageError& error) {
+    refuse(message, source, error.what());
+    return;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sources_[source]->has_news = true;
+    if (!sources_[source]->tracker.noteArrival(keyframe.id)) {
+      ++repeated_;
+      return;
+    }
+  }
+  on_keyframe_(std::move(keyframe), source);
+}
+
+void KeyframeReceiver::refuse(const KeyframeMessage& message, std::size_t source,
+                              const std::string& reason) {
+  ++malformed_;
+  const bool has_name = isRobotName(message.robot);
+  const std::string robot = has_name ? message.robot : "with a bad name";
+  log_.error("malformed " + robot, "keyframe " + std::to_string(message.id) + " of robot " + robot +
+                                       " (session " + std::to_string(message.session) +
+                                       ") ignored: " + reason);
+  if (has_name) settle(source, {message.robot, message.session, message.id});
+}
+
+void KeyframeReceiver::settle(std::size_t source, const KeyframeId& id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  sources_[source]->tracker.settle(id);
+  sources_[source]->has_news = true;
+}
+
+std::size_t KeyframeReceiver::missing() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::size_t count = 0;
+  for (const auto& source : sources_) count += source->tracker.missing();
+  return count;
+}
+
+void KeyframeReceiver::acknowledgeAll() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const ros::WallTime now = ros::WallTime::now();
+  for (const auto& source : sources_) {
+    if (!source->has_news && now - source->last_ack < ack_period_) continue;
+    acknowledge(*source);
+    source->has_news = false;
+    source->last_ack = now;
+  }
+}
+
+void KeyframeReceiver::acknowledge(Source& source) const {
+  std::vector<SessionReceipt> receipts = source.tracker.receipts();
+  // An empty one says that somebody listens, so that late backends get what was sent before.
+  if (receipts.empty()) receipts.emplace_back();
+  for (const SessionReceipt& receipt : receipts) {
+    KeyframeAckMessage message = toMessage(receipt);
+    message.backend_id = backend_id_;
+    source.acks.publish(message);
+  }
+}
+
+}  // namespace planecloud_slam

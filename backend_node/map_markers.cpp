@@ -1,0 +1,184 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/map_markers.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "planecloud_slam/plane_fit/se3.h"
+#include "planecloud_slam/planecloud_msgs/plane_triangles.h"
+#include "planecloud_slam/planecloud_msgs/pose_conversions.h"
+
+namespace planecloud_slam {
+namespace {
+
+/// Smaller moves are not worth sending the planes of a keyframe again.
+constexpr double kVisibleMove = 0.01;       // [m]
+constexpr double kVisibleRotation = 0.003;  // [rad]
+constexpr float kJoinedAlpha = 1.0F;
+/// Keyframes whose relation to the map is unknown show through.
+constexpr float kSeparateAlpha = 0.3F;
+constexpr double kNodeSize = 0.06;  // [m]
+
+std_msgs::ColorRGBA makeColor(const RobotColor& color, float alpha) {
+  std_msgs::ColorRGBA message;
+  message.r = static_cast<float>(color.r) / 255.0F;
+  message.g = static_cast<float>(color.g) / 255.0F;
+  message.b = static_cast<float>(color.b) / 255.0F;
+  message.a = alpha;
+  return message;
+}
+
+const std_msgs::ColorRGBA kHistoryColor = makeColor({150, 150, 150}, 0.5F);
+const std_msgs::ColorRGBA kClosureColor = makeColor({255, 140, 0}, 1.0F);
+const std_msgs::ColorRGBA kInterRobotColor = makeColor({255, 0, 200}, 1.0F);
+
+geometry_msgs::Point positionOf(const Eigen::Isometry3d& T_map_camera) {
+  return toPoseMessage(T_map_camera).position;
+}
+
+visualization_msgs::Marker makeMarker(const std::string& ns, int type, double size) {
+  visualization_msgs::Marker marker;
+  marker.ns = ns;
+  marker.type = type;
+  marker.action = visualization_msgs::Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = size;
+  marker.color = kHistoryColor;
+  return marker;
+}
+
+visualization_msgs::Marker makeDeleteAll(const std_msgs::Header& header) {
+  visualization_msgs::Marker marker;
+  marker.header = header;
+  marker.action = visualization_msgs::Marker::DELETEALL;
+  return marker;
+}
+
+using Nodes = std::map<KeyframeId, const MapSnapshot::Node*>;
+
+Nodes indexNodes(const MapSnapshot& snapshot) {
+  Nodes nodes;
+  for (const MapSnapshot::Node& node : snapshot.nodes) nodes[node.keyframe->id] = &node;
+  return nodes;
+}
+
+visualization_msgs::Marker makeNodeMarker(const MapSnapshot& snapshot) {
+  const std::map<std::string, RobotColor> colors = robotColors(snapshot);
+  auto marker = makeMarker("keyframes", visualization_msgs::Marker::SPHERE_LIST, kNodeSize);
+  for (const MapSnapshot::Node& node : snapshot.nodes) {
+    marker.points.push_back(positionOf(node.T_map_camera));
+    marker.colors.push_back(makeColor(colors.at(node.keyframe->id.robot), 1.0F));
+  }
+  return marker;
+}
+
+std_msgs::ColorRGBA colorOf(const GraphEdge& edge,
+                            const std::map<std::string, RobotColor>& colors) {
+  if (edge.kind == EdgeKind::kOdometry) return makeColor(colors.at(edge.from.robot), 1.0F);
+  if (edge.kind == EdgeKind::kHistory) return kHistoryColor;
+  return edge.inter_robot ? kInterRobotColor : kClosureColor;
+}
+
+/// A list of lines for each kind of edge.
+std::vector<visualization_msgs::Marker> makeEdgeMarkers(const MapSnapshot& snapshot) {
+  const Nodes nodes = indexNodes(snapshot);
+  const std::map<std::string, RobotColor> colors = robotColors(snapshot);
+  const int lines = visualization_msgs::Marker::LINE_LIST;
+  std::vector<visualization_msgs::Marker> markers = {makeMarker("odometry", lines, 0.025),
+                                                     makeMarker("history", lines, 0.008),
+                                                     makeMarker("closures", lines, 0.02)};
+  for (const GraphEdge& edge : snapshot.edges) {
+    const auto from = nodes.find(edge.from);
+    const auto to = nodes.find(edge.to);
+    if (from == nodes.end() || to == nodes.end()) continue;
+    visualization_msgs::Marker& marker = markers.at(static_cast<std::size_t>(edge.kind));
+    for (const MapSnapshot::Node* node : {from->second, to->second}) {
+      marker.points.push_back(positionOf(node->T_map_camera));
+      marker.colors.push_back(colorOf(edge, colors));
+    }
+  }
+  return markers;
+}
+
+}  // namespace
+
+bool PlaneMapMarkers::isUpToDate(const MapSnapshot::Node& node) const {
+  const auto shown = shown_.find(node.keyframe->id);
+  if (shown == shown_.end() || shown->second.joined != (node.component == 0)) return false;
+  const Eigen::Isometry3d T_shown_now = shown->second.T_map_camera.inverse() * node.T_map_camera;
+  return T_shown_now.translation().norm() < kVisibleMove &&
+         rotationAngle(T_shown_now) < kVisibleRotation;
+}
+
+visualization_msgs::Marker PlaneMapMarkers::makeMarker(const MapSnapshot::Node& node,
+                                                       const RobotColor& color) const {
+  std::vector<geometry_msgs::Point> corners =
+      tileTriangles(*node.keyframe->planes, view_.max_depth);
+  const Eigen::RowVector3d up = node.T_map_camera.linear().row(2);
+  std::vector<geometry_msgs::Point> triangles;
+  for (std::size_t i = 0; i + 6 <= corners.size(); i += 6) {
+    const bool is_low = std::all_of(&corners[i], &corners[i] + 6, [&](const auto& corner) {
+      return up * Eigen::Vector3d(corner.x, corner.y, corner.z) <= view_.max_height;
+    });
+    if (is_low) triangles.insert(triangles.end(), &corners[i], &corners[i] + 6);
+  }
+  const float alpha = node.component == 0 ? kJoinedAlpha : kSeparateAlpha;
+  visualization_msgs::Marker marker =
+      makeTriangleMarker(std::move(triangles), makeColor(color, alpha));
+  marker.pose = toPoseMessage(node.T_map_camera);
+  marker.ns = node.keyframe->id.robot;
+  return marker;
+}
+
+visualization_msgs::MarkerArray PlaneMapMarkers::update(const MapSnapshot& snapshot,
+                                                        const std_msgs::Header& header) {
+  if (snapshot.nodes.size() < shown_.size()) forget();
+  visualization_msgs::MarkerArray markers;
+  if (std::exchange(begins_, false)) markers.markers.push_back(makeDeleteAll(header));
+  const std::map<std::string, RobotColor> colors = robotColors(snapshot);
+  for (const MapSnapshot::Node& node : snapshot.nodes) {
+    if (isUpToDate(node)) continue;
+    const KeyframeId& id = node.keyframe->id;
+    const auto [shown, is_new] = shown_.try_emplace(id);
+    if (is_new) shown->second.id = static_cast<int>(shown_.size());
+    shown->second.T_map_camera = node.T_map_camera;
+    shown->second.joined = node.component == 0;
+    markers.markers.push_back(makeMarker(node, colors.at(id.robot)));
+    markers.markers.back().header = header;
+    markers.markers.back().id = shown->second.id;
+  }
+  return markers;
+}
+
+visualization_msgs::MarkerArray makeGraphMarkers(const MapSnapshot& snapshot,
+                                                 const std_msgs::Header& header) {
+  visualization_msgs::MarkerArray markers;
+  markers.markers = makeEdgeMarkers(snapshot);
+  markers.markers.push_back(makeNodeMarker(snapshot));
+  for (visualization_msgs::Marker& marker : markers.markers) {
+    marker.header = header;
+    if (marker.points.empty()) marker.action = visualization_msgs::Marker::DELETE;
+  }
+  return markers;
+}
+
+std::map<std::string, nav_msgs::Path> makePaths(const MapSnapshot& snapshot,
+                                                const std_msgs::Header& header) {
+  std::map<std::string, nav_msgs::Path> paths;
+  for (const MapSnapshot::Node& node : snapshot.nodes) {
+    if (node.component != 0) continue;
+    nav_msgs::Path& path = paths[node.keyframe->id.robot];
+    path.header = header;
+    geometry_msgs::PoseStamped pose;
+    pose.header.frame_id = header.frame_id;
+    pose.header.stamp = ros::Time(node.keyframe->stamp);
+    pose.pose = toPoseMessage(node.T_map_camera);
+    path.poses.push_back(std::move(pose));
+  }
+  return paths;
+}
+
+}  // namespace planecloud_slam
