@@ -53,7 +53,7 @@ struct FrontendNodeOptions {
   std::string robot;                ///< unique name; empty: the namespace, else "robot"
   std::string session;              ///< start of this run [ns]; empty: now
   std::string odom_frame = "odom";  ///< of the robot's base; empty: visual odometry alone
-  std::string base_frame = "base_link";
+  std::string base_frame = "base_footprint";
   bool publish_odom_tf = false;   ///< visual odometry as tf odom -> base
   double tf_wait = 0.2;           ///< longest wait for a keyframe's tf [s], [0, 5]
   double shutdown_timeout = 3.0;  ///< longest wait for acknowledgements at the end [s], [0, 60]
