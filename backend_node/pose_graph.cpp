@@ -24,6 +24,14 @@ bool observesEverything(const Matrix6d& information) {
   return solver.eigenvalues().minCoeff() >= kObserved;
 }
 
+/// Isometry3d inverts by transposing, so rounding errors of a rotation would grow exponentially
+/// along a chain of products and inverses.
+Eigen::Isometry3d orthonormal(const Eigen::Isometry3d& T) {
+  Eigen::Isometry3d result = T;
+  result.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  return result;
+}
+
 std::size_t index(int number) { return static_cast<std::size_t>(number); }
 
 }  // namespace
@@ -34,7 +42,7 @@ int PoseGraph::addNode(const KeyframeId& id, const Eigen::Isometry3d& T_map_came
   if (!numbers_.emplace(id, size()).second) {
     throw std::invalid_argument("keyframe " + toString(id) + " is in the graph already");
   }
-  nodes_.push_back({id, T_map_camera, components_++});
+  nodes_.push_back({id, orthonormal(T_map_camera), components_++});
   return size() - 1;
 }
 
@@ -60,7 +68,8 @@ std::optional<int> PoseGraph::find(const KeyframeId& id) const {
 
 void PoseGraph::moveComponent(int component, const Eigen::Isometry3d& T_new_old) {
   for (Node& node : nodes_) {
-    if (node.component == component) node.T_map_camera = T_new_old * node.T_map_camera;
+    if (node.component != component) continue;
+    node.T_map_camera = orthonormal(T_new_old * node.T_map_camera);
   }
 }
 

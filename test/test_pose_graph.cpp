@@ -180,6 +180,18 @@ TEST(PoseGraph, OfTwoLinksThatContradictOneGoesAndTheComponentHolds) {
   EXPECT_EQ(graph.edges().size(), 3u);
 }
 
+TEST(PoseGraph, KeepsRotationsOrthonormalHoweverOftenAComponentMoves) {
+  PoseGraph graph{PoseGraphOptions()};
+  std::mt19937 generator(10);
+  graph.addNode(idOf(0), expSe3(noise(generator, 1.0, 1.0)));
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Isometry3d T = expSe3(noise(generator, 1.0, 1.0));
+    graph.moveComponent(0, graph.pose(0) * T * graph.pose(0).inverse());
+  }
+  const Eigen::Matrix3d R = graph.pose(0).linear();
+  EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
 TEST(PoseGraph, MeasuresTheShortestWayThroughCompleteMeasurements) {
   PoseGraph graph{PoseGraphOptions()};
   const Eigen::Isometry3d step(Eigen::Translation3d(1.0, 0.0, 0.0));
