@@ -14,12 +14,12 @@ HallwayBuilder::HallwayBuilder(std::uint64_t seed) : random_(hashOf(seed, 0x77))
 }
 
 void HallwayBuilder::mixPalette(std::uint64_t seed) {
-  textures_.push_back(makeBlotchTexture(hashOf(seed, 1)));  // HallwayWorld::blotches()
-  textures_.push_back(makePaintTexture(hashOf(seed, 2)));
-  textures_.push_back(makeFloorTexture(hashOf(seed, 3)));
-  textures_.push_back(makeCeilingTexture(hashOf(seed, 4)));
-  textures_.push_back(makeWoodTexture(hashOf(seed, 5)));
-  textures_.push_back(makeCardboardTexture(hashOf(seed, 6)));
+  modulations_.push_back(makeBlotchTexture(hashOf(seed, 1)));  // HallwayWorld::blotches()
+  modulations_.push_back(makePaintTexture(hashOf(seed, 2)));
+  modulations_.push_back(makeFloorTexture(hashOf(seed, 3)));
+  modulations_.push_back(makeCeilingTexture(hashOf(seed, 4)));
+  modulations_.push_back(makeWoodTexture(hashOf(seed, 5)));
+  modulations_.push_back(makeCardboardTexture(hashOf(seed, 6)));
   enum { kBlotch, kPaint, kFloor, kCeiling, kWood, kCardboard };
 
   const Eigen::Array3f paints[] = {{196, 192, 180}, {188, 194, 196}, {200, 190, 176}};
@@ -27,7 +27,7 @@ void HallwayBuilder::mixPalette(std::uint64_t seed) {
     const auto shade = static_cast<float>(random_.uniform(0.96, 1.04));
     palette_.walls.push_back(addModulated(kPaint, paint * shade, 0.06F, 1.6F));
     materials_.back().wall = true;
-    materials_.back().blotches = 0.02F;
+    materials_.back().blotches = 0.05F;
   }
   const Eigen::Array3f leaves[] = {{150, 108, 70}, {118, 128, 140}, {164, 132, 92}};
   for (const Eigen::Array3f& leaf : leaves) {
@@ -40,7 +40,7 @@ void HallwayBuilder::mixPalette(std::uint64_t seed) {
     palette_.furniture.push_back(addModulated(i % 2 == 0 ? kWood : kPaint, color, 0.2F, 1.1F));
   }
   palette_.floor = addModulated(kFloor, {128, 124, 116}, 0.5F, 1.8F);
-  materials_.back().blotches = 0.06F;
+  materials_.back().blotches = 0.15F;
   palette_.ceiling = addModulated(kCeiling, {206, 206, 202}, 0.3F, 1.2F);
   palette_.skirting = addModulated(kPaint, {84, 78, 74}, 0.15F, 1.0F);
   palette_.door_frame = addModulated(kPaint, {128, 124, 120}, 0.12F, 1.0F);
@@ -59,19 +59,19 @@ int HallwayBuilder::addModulated(int texture, const Eigen::Array3f& tint, float 
   Material material;
   material.tint = tint;
   material.contrast = contrast;
-  material.blotches = 0.03F;
+  material.blotches = 0.075F;
   material.texture = texture;
   material.metres = metres;
   materials_.push_back(material);
   return static_cast<int>(materials_.size()) - 1;
 }
 
-int HallwayBuilder::addPicture(MipTexture texture, Material::Kind kind, float brightness) {
+int HallwayBuilder::addPicture(MipTexture<Rgb8> picture, Material::Kind kind, float brightness) {
   Material material;
   material.kind = kind;
   material.tint = Eigen::Array3f::Constant(255.0F * brightness);
-  material.texture = static_cast<int>(textures_.size());
-  textures_.push_back(std::move(texture));
+  material.texture = static_cast<int>(pictures_.size());
+  pictures_.push_back(std::move(picture));
   materials_.push_back(material);
   return static_cast<int>(materials_.size()) - 1;
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "planecloud_slam/rosbags/hallway_world.h"
@@ -47,7 +48,7 @@ class HallwayBuilder {
                  int material, Solid::Shape shape = Solid::Shape::kBox);
   void addSolid(const Solid& solid) { solids_.push_back(solid); }
   /// A material with a picture of its own.
-  [[nodiscard]] int addPicture(MipTexture texture, Material::Kind kind, float brightness);
+  [[nodiscard]] int addPicture(MipTexture<Rgb8> picture, Material::Kind kind, float brightness);
   void addFace(const WallFace& face) { faces_.push_back(face); }
 
   [[nodiscard]] SeededRandom& random() { return random_; }
@@ -55,7 +56,8 @@ class HallwayBuilder {
   [[nodiscard]] const std::vector<WallFace>& faces() const { return faces_; }
   [[nodiscard]] std::vector<Solid>&& takeSolids() { return std::move(solids_); }
   [[nodiscard]] std::vector<Material>&& takeMaterials() { return std::move(materials_); }
-  [[nodiscard]] std::vector<MipTexture>&& takeTextures() { return std::move(textures_); }
+  [[nodiscard]] auto&& takeModulations() { return std::move(modulations_); }
+  [[nodiscard]] auto&& takePictures() { return std::move(pictures_); }
 
  private:
   [[nodiscard]] int addModulated(int texture, const Eigen::Array3f& tint, float contrast,
@@ -66,7 +68,8 @@ class HallwayBuilder {
   HallwayPalette palette_;
   std::vector<Solid> solids_;
   std::vector<Material> materials_;
-  std::vector<MipTexture> textures_;
+  std::vector<MipTexture<std::uint8_t>> modulations_;
+  std::vector<MipTexture<Rgb8>> pictures_;
   std::vector<WallFace> faces_;
 };
 

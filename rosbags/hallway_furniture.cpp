@@ -114,13 +114,13 @@ double placeRadiator(HallwayBuilder& builder, const WallFace& face, double from)
 
 double placeSomething(HallwayBuilder& builder, const WallFace& face, double from) {
   const double choice = builder.random().uniform(0.0, 1.0);
-  if (choice < 0.32) return hangPoster(builder, face, from, kLongest);
-  if (choice < 0.44) return hangNoticeBoard(builder, face, from);
-  if (choice < 0.58) return placeCabinet(builder, face, from);
-  if (choice < 0.71) return stackBoxes(builder, face, from);
-  if (choice < 0.81) return placeBin(builder, face, from);
-  if (choice < 0.87) return hangExtinguisher(builder, face, from);
-  if (choice < 0.93) return placeBench(builder, face, from);
+  if (choice < 0.24) return hangPoster(builder, face, from, kLongest);
+  if (choice < 0.34) return hangNoticeBoard(builder, face, from);
+  if (choice < 0.52) return placeCabinet(builder, face, from);
+  if (choice < 0.68) return stackBoxes(builder, face, from);
+  if (choice < 0.78) return placeBin(builder, face, from);
+  if (choice < 0.84) return hangExtinguisher(builder, face, from);
+  if (choice < 0.92) return placeBench(builder, face, from);
   return placeRadiator(builder, face, from);
 }
 

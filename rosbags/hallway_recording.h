@@ -25,7 +25,7 @@ struct HallwayOptions {
   std::uint64_t seed = 1;          ///< of textures, furniture, path and noise
   int robot = 0;                   ///< index of the robot, [0, robots)
   int robots = 1;                  ///< how many record at the same time, [1, 16]
-  double duration = 80.0;          ///< [s], (0, 3600]; once around the block and 8 s or more again
+  double duration = 84.0;          ///< [s], (0, 3600]; once around the block and 8 s or more again
   bool noise = true;               ///< the Astra's; false: exact depth in whole millimetres
   std::optional<DriveKind> drive;  ///< none: robots 0, 1, 2, ... take different ones in turn
   CameraIntrinsics camera = astraCamera();

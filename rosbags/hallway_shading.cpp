@@ -60,65 +60,54 @@ TextureFootprint footprintOf(const SurfacePatch& patch, const Eigen::Array2f& te
   return footprint;
 }
 
-Eigen::Array3f pictureColor(const Material& material, const MipTexture& texture,
-                            const PlacedSolid& placed, const SurfaceHit& hit,
+Eigen::Array3f pictureColor(const MipTexture<Rgb8>& picture, const PlacedSolid& placed, int axis,
                             const SurfacePatch& patch) {
-  const Eigen::Vector2f half = onFace(placed.solid().half.cast<float>(), hit.face / 2);
-  const auto side = static_cast<float>(texture.side());
+  const Eigen::Vector2f half = onFace(placed.half(), axis);
+  const auto side = static_cast<float>(picture.side());
   // Rows of a picture run downwards, heights upwards.
   const Eigen::Array2f texels_per_metre(0.5F * side / half.x(), -0.5F * side / half.y());
   const Eigen::Vector2f corner(half.x(), -half.y());
-  return texture.sample(footprintOf(patch, texels_per_metre, corner)) * (material.tint / 255.0F);
+  return picture.sample(footprintOf(patch, texels_per_metre, corner));
 }
 
-Eigen::Array3f modulatedColor(const HallwayWorld& world, const Material& material,
-                              const Solid& solid, const SurfacePatch& patch) {
-  // Each solid starts elsewhere in the texture, so that no two look alike.
-  const Eigen::Vector2f offset(static_cast<float>(std::fmod(7.31 * solid.centre.x(), 64.0)),
-                               static_cast<float>(std::fmod(5.17 * solid.centre.y(), 64.0)));
-  const MipTexture& texture = world.textures()[static_cast<std::size_t>(material.texture)];
+/// Relative change of a material's brightness at a place.
+float modulation(const HallwayWorld& world, const Material& material, const PlacedSolid& placed,
+                 const SurfacePatch& patch) {
+  const Eigen::Vector2f& offset = placed.textureOffset();
+  const MipTexture<std::uint8_t>& texture =
+      world.modulations()[static_cast<std::size_t>(material.texture)];
   const Eigen::Array2f fine =
       Eigen::Array2f::Constant(static_cast<float>(texture.side()) / material.metres);
-  const float grain = texture.sample(footprintOf(patch, fine, offset)).x() / 128.0F - 1.0F;
-  const MipTexture& blotches = world.blotches();
+  const float grain = texture.sample(footprintOf(patch, fine, offset)) / 128.0F - 1.0F;
+  const MipTexture<std::uint8_t>& blotches = world.blotches();
   const Eigen::Vector2f coarse =
       (patch.place + offset) * (static_cast<float>(blotches.side()) / kBlotchMetres);
-  const float blotch = blotches.sampleFinest(coarse).x() / 128.0F - 1.0F;
-  return material.tint * (1.0F + material.contrast * grain + 2.5F * material.blotches * blotch);
+  const float blotch = blotches.sampleFinest(coarse) / 128.0F - 1.0F;
+  return 1.0F + material.contrast * grain + material.blotches * blotch;
 }
 
 /// Brightness by the direction a surface faces: floors bright, ceilings dark, walls between.
 float facingLight(const PlacedSolid& placed, const Eigen::Vector3f& normal) {
-  const auto cosine = static_cast<float>(std::cos(placed.solid().yaw));
-  const auto sine = static_cast<float>(std::sin(placed.solid().yaw));
-  const float x = cosine * normal.x() - sine * normal.y();
-  const float y = sine * normal.x() + cosine * normal.y();
-  return 0.9F + 0.04F * x - 0.06F * y + 0.08F * normal.z();
+  const Eigen::Vector2f facing = placed.toWorld(normal);
+  return 0.9F + 0.04F * facing.x() - 0.06F * facing.y() + 0.08F * normal.z();
 }
 
 }  // namespace
 
 Eigen::Array3f shade(const HallwayWorld& world, const PlacedSolid& placed, const SurfaceHit& hit,
                      const PixelPitch& pitch) {
-  const Solid& solid = placed.solid();
-  const Material& material = world.materials()[static_cast<std::size_t>(solid.material)];
+  const Material& material = world.materials()[static_cast<std::size_t>(placed.solid().material)];
   if (material.kind == Material::Kind::kLamp) return material.tint;
   const SurfacePatch patch = patchOf(placed, hit, pitch);
-  const MipTexture& texture = world.textures()[static_cast<std::size_t>(material.texture)];
-  if (material.kind == Material::Kind::kGlass) {
-    return pictureColor(material, texture, placed, hit, patch);
+  const Eigen::Vector2f place = placed.place() + placed.toWorld(hit.point);
+  const float light = world.light(place.x(), place.y()) * facingLight(placed, hit.normal);
+  if (material.kind == Material::Kind::kModulated) {
+    return material.tint * (light * modulation(world, material, placed, patch));
   }
-  const auto cosine = static_cast<float>(std::cos(solid.yaw));
-  const auto sine = static_cast<float>(std::sin(solid.yaw));
-  const float x =
-      static_cast<float>(solid.centre.x()) + cosine * hit.point.x() - sine * hit.point.y();
-  const float y =
-      static_cast<float>(solid.centre.y()) + sine * hit.point.x() + cosine * hit.point.y();
-  const float light = world.light(x, y) * facingLight(placed, hit.normal);
-  if (material.kind == Material::Kind::kPicture) {
-    return light * pictureColor(material, texture, placed, hit, patch);
-  }
-  return light * modulatedColor(world, material, solid, patch);
+  const MipTexture<Rgb8>& picture = world.pictures()[static_cast<std::size_t>(material.texture)];
+  const Eigen::Array3f color =
+      pictureColor(picture, placed, hit.face / 2, patch) * (material.tint / 255.0F);
+  return material.kind == Material::Kind::kGlass ? color : Eigen::Array3f(light * color);
 }
 
 }  // namespace planecloud_slam

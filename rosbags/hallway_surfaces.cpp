@@ -57,11 +57,11 @@ Rgb8 greyLevel(double value) {
   return {level, level, level};
 }
 
-MipTexture fromModulation(const Image<float>& modulation) {
-  Image<Rgb8> pixels(modulation.width(), modulation.height());
+Modulation fromNoise(const Image<float>& modulation) {
+  Image<std::uint8_t> pixels(modulation.width(), modulation.height());
   std::transform(modulation.begin(), modulation.end(), pixels.begin(),
-                 [](float value) { return greyLevel(128.0 + value); });
-  return MipTexture(std::move(pixels));
+                 [](float value) { return toByte(128.0 + value); });
+  return Modulation(std::move(pixels));
 }
 
 struct Rectangle {
@@ -120,19 +120,19 @@ void printPicture(Image<Rgb8>& image, const Rectangle& where, SeededRandom& rand
 
 }  // namespace
 
-MipTexture makePaintTexture(std::uint64_t seed) {
-  return fromModulation(multiScaleNoise(seed, kSurfaceSide, [](double wavelength) {
+Modulation makePaintTexture(std::uint64_t seed) {
+  return fromNoise(multiScaleNoise(seed, kSurfaceSide, [](double wavelength) {
     return wavelength < 6.0 ? 22.0 : wavelength < 40.0 ? 14.0 : 9.0;
   }));
 }
 
-MipTexture makeBlotchTexture(std::uint64_t seed) {
-  return fromModulation(multiScaleNoise(seed, kSurfaceSide, [](double wavelength) {
+Modulation makeBlotchTexture(std::uint64_t seed) {
+  return fromNoise(multiScaleNoise(seed, kSurfaceSide, [](double wavelength) {
     return wavelength < 6.0 ? 2.0 : wavelength < 24.0 ? 14.0 : 20.0;
   }));
 }
 
-MipTexture makeFloorTexture(std::uint64_t seed) {
+Modulation makeFloorTexture(std::uint64_t seed) {
   Image<float> floor = multiScaleNoise(seed, kSurfaceSide, [](double wavelength) {
     return wavelength < 10.0 ? 26.0 : wavelength < 40.0 ? 10.0 : 6.0;
   });
@@ -144,10 +144,10 @@ MipTexture makeFloorTexture(std::uint64_t seed) {
       if (x % kTile < 2 || y % kTile < 2) floor(x, y) = -70.0F;
     }
   }
-  return fromModulation(floor);
+  return fromNoise(floor);
 }
 
-MipTexture makeCeilingTexture(std::uint64_t seed) {
+Modulation makeCeilingTexture(std::uint64_t seed) {
   Image<float> ceiling = multiScaleNoise(
       seed, kSurfaceSide, [](double wavelength) { return wavelength < 10.0 ? 12.0 : 4.0; });
   SeededRandom random(hashOf(seed, 1));
@@ -161,20 +161,20 @@ MipTexture makeCeilingTexture(std::uint64_t seed) {
       if (x % (kSurfaceSide / 2) < 5 || y % (kSurfaceSide / 2) < 5) ceiling(x, y) = -60.0F;
     }
   }
-  return fromModulation(ceiling);
+  return fromNoise(ceiling);
 }
 
-MipTexture makeWoodTexture(std::uint64_t seed) {
+Modulation makeWoodTexture(std::uint64_t seed) {
   const Image<float> bands = multiScaleNoise(
       seed, kSurfaceSide, [](double wavelength) { return wavelength < 12.0 ? 22.0 : 16.0; });
   Image<float> wood(kSurfaceSide, kSurfaceSide);
   for (int y = 0; y < wood.height(); ++y) {
     for (int x = 0; x < wood.width(); ++x) wood(x, y) = bands(x, y / 16);
   }
-  return fromModulation(wood);
+  return fromNoise(wood);
 }
 
-MipTexture makeCardboardTexture(std::uint64_t seed) {
+Modulation makeCardboardTexture(std::uint64_t seed) {
   Image<float> board = multiScaleNoise(
       seed, kSurfaceSide, [](double wavelength) { return wavelength < 10.0 ? 12.0 : 14.0; });
   SeededRandom random(hashOf(seed, 1));
@@ -192,10 +192,10 @@ MipTexture makeCardboardTexture(std::uint64_t seed) {
                                                 : random.uniform(-100.0, -40.0)));
   }
   print({0, random.integer(0, kSurfaceSide), kSurfaceSide, 24}, 35.0F);
-  return fromModulation(board);
+  return fromNoise(board);
 }
 
-MipTexture makePosterTexture(std::uint64_t seed) {
+Picture makePosterTexture(std::uint64_t seed) {
   SeededRandom random(seed);
   Image<Rgb8> poster(kPosterSide, kPosterSide, randomColor(random, 150.0, 250.0));
   constexpr int kMargin = 12;
@@ -218,10 +218,10 @@ MipTexture makePosterTexture(std::uint64_t seed) {
       }
     }
   }
-  return MipTexture(std::move(poster));
+  return Picture(std::move(poster));
 }
 
-MipTexture makeWindowTexture(std::uint64_t seed) {
+Picture makeWindowTexture(std::uint64_t seed) {
   SeededRandom random(seed);
   Image<Rgb8> view(kPosterSide, kPosterSide);
   for (int y = 0; y < kPosterSide; ++y) {
@@ -232,7 +232,7 @@ MipTexture makeWindowTexture(std::uint64_t seed) {
     fill(view, {random.integer(-20, kPosterSide), top, random.integer(30, 80), kPosterSide - top},
          randomColor(random, 90.0, 170.0));
   }
-  return MipTexture(std::move(view));
+  return Picture(std::move(view));
 }
 
 }  // namespace planecloud_slam

@@ -37,7 +37,8 @@ HallwayWorld::HallwayWorld(std::uint64_t seed) {
   furnish(builder);
   solids_ = builder.takeSolids();
   materials_ = builder.takeMaterials();
-  textures_ = builder.takeTextures();
+  modulations_ = builder.takeModulations();
+  pictures_ = builder.takePictures();
   bakeLight(lamps);
 }
 

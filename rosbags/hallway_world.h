@@ -23,7 +23,7 @@ struct Material {
   Eigen::Array3f tint = Eigen::Array3f::Constant(180.0F);  ///< [0, 255]
   float contrast = 0.1F;                                   ///< of the texture [-]
   float blotches = 0.0F;  ///< deviation of slow changes over metres, relative [-]
-  int texture = 0;        ///< index into HallwayWorld::textures()
+  int texture = 0;        ///< index into HallwayWorld::modulations() or pictures()
   float metres = 1.5F;    ///< side of the texture on the surface [m]
   bool wall = false;      ///< painted wall, for the share of low contrast
 };
@@ -48,9 +48,13 @@ class HallwayWorld {
 
   [[nodiscard]] const std::vector<Solid>& solids() const { return solids_; }
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
-  [[nodiscard]] const std::vector<MipTexture>& textures() const { return textures_; }
+  /// Grey textures around 128.
+  [[nodiscard]] const std::vector<MipTexture<std::uint8_t>>& modulations() const {
+    return modulations_;
+  }
+  [[nodiscard]] const std::vector<MipTexture<Rgb8>>& pictures() const { return pictures_; }
   /// Slow brightness changes that every material mixes in by its `blotches`.
-  [[nodiscard]] const MipTexture& blotches() const { return textures_.front(); }
+  [[nodiscard]] const MipTexture<std::uint8_t>& blotches() const { return modulations_.front(); }
   /// Brightness of the ceiling lamps at (x, y) [m], about 0.75 to 1.1: pools of light that change
   /// over metres, the same from every direction.
   [[nodiscard]] float light(float x, float y) const;
@@ -64,7 +68,8 @@ class HallwayWorld {
 
   std::vector<Solid> solids_;
   std::vector<Material> materials_;
-  std::vector<MipTexture> textures_;
+  std::vector<MipTexture<std::uint8_t>> modulations_;
+  std::vector<MipTexture<Rgb8>> pictures_;
   Image<float> light_;
 };
 

@@ -33,7 +33,12 @@ std::array<Eigen::Vector3d, 8> cornersOf(const Solid& solid, const Eigen::Isomet
 
 PlacedSolid::PlacedSolid(const Solid& solid, const Eigen::Isometry3d& T_world_camera,
                          const CameraIntrinsics& camera)
-    : solid_(&solid), half_(solid.half.cast<float>()) {
+    : solid_(&solid),
+      half_(solid.half.cast<float>()),
+      heading_(Eigen::Vector2d(std::cos(solid.yaw), std::sin(solid.yaw)).cast<float>()),
+      place_(solid.centre.head<2>().cast<float>()),
+      texture_offset_(static_cast<float>(std::fmod(7.31 * solid.centre.x(), 64.0)),
+                      static_cast<float>(std::fmod(5.17 * solid.centre.y(), 64.0))) {
   const Eigen::Isometry3d T_solid_camera = poseOf(solid).inverse() * T_world_camera;
   origin_ = T_solid_camera.translation().cast<float>();
   R_solid_camera_ = T_solid_camera.linear().cast<float>();

@@ -56,8 +56,18 @@ class PlacedSolid {
   [[nodiscard]] float intersect(const ImageRay& ray) const;
   /// The hit of a ray known to enter the solid at `depth`.
   [[nodiscard]] SurfaceHit surfaceAt(const ImageRay& ray, float depth) const;
-  /// Camera's x and y axes in the solid's axes.
+  /// Camera's axes in the solid's axes.
   [[nodiscard]] const Eigen::Matrix3f& cameraAxes() const { return R_solid_camera_; }
+  /// Horizontal part of a vector turned from the solid's axes into the world's.
+  [[nodiscard]] Eigen::Vector2f toWorld(const Eigen::Vector3f& vector) const {
+    return {heading_.x() * vector.x() - heading_.y() * vector.y(),
+            heading_.y() * vector.x() + heading_.x() * vector.y()};
+  }
+  /// Horizontal place of the solid [m].
+  [[nodiscard]] const Eigen::Vector2f& place() const { return place_; }
+  [[nodiscard]] const Eigen::Vector3f& half() const { return half_; }
+  /// Each solid starts elsewhere in its texture [m], so that no two look alike.
+  [[nodiscard]] const Eigen::Vector2f& textureOffset() const { return texture_offset_; }
 
  private:
   void findExtent(const Eigen::Isometry3d& T_camera_solid, const CameraIntrinsics& camera);
@@ -68,6 +78,9 @@ class PlacedSolid {
 
   const Solid* solid_;
   Eigen::Vector3f half_;
+  Eigen::Vector2f heading_;  ///< cosine and sine of the yaw
+  Eigen::Vector2f place_;
+  Eigen::Vector2f texture_offset_;
   Eigen::Vector3f origin_;  ///< camera's centre in the solid's axes [m]
   Eigen::Matrix3f R_solid_camera_;
   bool visible_ = false;
