@@ -331,7 +331,7 @@ PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   if (walk(grid, quantiser, count, coder, NoPlan{}, decodeTile) != count) {
     throw PlaneCloudDecodeError("plane cloud: fewer tiles than announced");
   }
-  if (!coder.exhausted()) throw PlaneCloudDecodeError("plane cloud: bytes left over");
+  if (!coder.atEnd()) throw PlaneCloudDecodeError("plane cloud: bytes left over");
   return cloud;
 }
 

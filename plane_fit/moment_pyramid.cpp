@@ -3,6 +3,7 @@
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr std::ptrdiff_t kRowPadding = 16;  // floats a vector kernel may read past a row
 
-const std::shared_ptr<const Camera>& required(const std::shared_ptr<const Camera>& camera) {
+std::shared_ptr<const Camera> required(std::shared_ptr<const Camera> camera) {
   if (!camera) throw std::invalid_argument("the plane fitter needs a camera, got none");
   return camera;
 }
@@ -20,9 +21,9 @@ const std::shared_ptr<const Camera>& required(const std::shared_ptr<const Camera
 
 MomentPyramid::MomentPyramid(std::shared_ptr<const Camera> camera, const QuadtreeLayout& layout,
                              const TileKernels& kernels)
-    : camera_(std::move(camera)),
+    : camera_(required(std::move(camera))),
       kernels_(kernels),
-      grid_(layout, required(camera_)->width(), camera_->height()),
+      grid_(layout, camera_->width(), camera_->height()),
       stride_((camera_->width() + 2 * kRowPadding - 1) / kRowPadding * kRowPadding),
       uniform_cells_(layout.initial_width % grid_.cellsPerSide(0) == 0) {
   const auto pixels = static_cast<std::size_t>(stride_ * camera_->height() + kRowPadding);

@@ -11,6 +11,15 @@ std::uint32_t split(std::uint32_t range, const AdaptiveBit& model) {
   return (range >> AdaptiveBit::kPrecision) * model.probability();
 }
 
+/// What to add to `low` for the number within [low, low + range) that has the most trailing zeros.
+std::uint32_t shortestEnd(std::uint32_t low, std::uint32_t range) {
+  for (int zeros = 31; zeros > 0; --zeros) {
+    const std::uint32_t missing = (0U - low) & ((1U << zeros) - 1U);
+    if (missing < range) return missing;
+  }
+  return 0;
+}
+
 }  // namespace
 
 bool RangeEncoder::code(bool bit, AdaptiveBit& model) {
@@ -43,7 +52,7 @@ void RangeEncoder::normalise() {
 }
 
 void RangeEncoder::shiftLow() {
-  if (low_ < 0xFF000000U || low_ > 0xFFFFFFFFU) {
+  if (pending_ == 0 || low_ < 0xFF000000U || low_ > 0xFFFFFFFFU) {
     const auto carry = static_cast<std::uint8_t>(low_ >> 32);
     for (bool first = true; pending_ > 0; --pending_, first = false) {
       bytes_.push_back(static_cast<std::uint8_t>((first ? cache_ : 0xFFU) + carry));
@@ -55,14 +64,7 @@ void RangeEncoder::shiftLow() {
 }
 
 void RangeEncoder::finish() {
-  // Any value in [low, low + range) will do: take the one with the most trailing zeros.
-  for (int zeros = 31; zeros >= 0; --zeros) {
-    const std::uint64_t unit = std::uint64_t{1} << zeros;
-    const std::uint64_t rounded = (low_ + unit - 1) & ~(unit - 1);
-    if (rounded - low_ >= range_) continue;
-    low_ = rounded;
-    break;
-  }
+  low_ += shortestEnd(static_cast<std::uint32_t>(low_), range_);
   for (int i = 0; i < 5; ++i) shiftLow();
   while (bytes_.size() > begin_ && bytes_.back() == 0) bytes_.pop_back();
 }
@@ -75,7 +77,13 @@ RangeDecoder::RangeDecoder(const std::uint8_t* bytes, std::size_t size)
 std::uint8_t RangeDecoder::nextByte() {
   const std::uint8_t byte = position_ < size_ ? bytes_[position_] : std::uint8_t{0};
   ++position_;
+  last_bytes_ = (last_bytes_ << 8) | byte;
   return byte;
+}
+
+bool RangeDecoder::atEnd() const {
+  if (position_ < size_ || (size_ > 0 && bytes_[size_ - 1] == 0)) return false;
+  return code_ == shortestEnd(last_bytes_ - code_, range_);
 }
 
 bool RangeDecoder::code(bool /*bit*/, AdaptiveBit& model) {

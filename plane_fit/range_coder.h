@@ -43,7 +43,8 @@ class RangeEncoder {
   std::uint32_t codeRaw(std::uint32_t value, int count);
   /// An upper bound of the bytes that `finish` would leave behind `bytes.size()` at construction.
   [[nodiscard]] std::size_t bytesSoFar() const { return bytes_.size() - begin_ + pending_ + 5; }
-  /// Writes what is missing. Trailing zero bytes are left out: the decoder reads zeros there.
+  /// Writes as few bytes as tell the last bits. Trailing zeros are left out: the decoder reads
+  /// zeros there.
   void finish();
 
  private:
@@ -67,8 +68,8 @@ class RangeDecoder {
   /// The argument is ignored, see `RangeEncoder::code`.
   bool code(bool bit, AdaptiveBit& model);
   std::uint32_t codeRaw(std::uint32_t value, int count);
-  /// All bytes were needed.
-  [[nodiscard]] bool exhausted() const { return position_ >= size_; }
+  /// All bytes were read and they end as `RangeEncoder::finish` would have left them.
+  [[nodiscard]] bool atEnd() const;
 
  private:
   void normalise();
@@ -77,7 +78,8 @@ class RangeDecoder {
   const std::uint8_t* bytes_;
   std::size_t size_;
   std::size_t position_ = 0;
-  std::uint32_t code_ = 0;
+  std::uint32_t last_bytes_ = 0;  // the four read last
+  std::uint32_t code_ = 0;        // less the encoder's low end
   std::uint32_t range_ = 0xFFFFFFFFU;
 };
 

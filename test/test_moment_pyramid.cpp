@@ -1,0 +1,156 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "planar_scene.h"
+#include "planecloud_slam/plane_fit/depth_traits.h"
+#include "planecloud_slam/plane_fit/moment_pyramid.h"
+
+namespace planecloud_slam {
+namespace {
+
+struct Case {
+  int width;
+  int height;
+  QuadtreeLayout layout;
+};
+
+const std::vector<Case> kCases = {{640, 480, {64, 64, 4}}, {848, 480, {64, 64, 4}},
+                                  {320, 240, {80, 60, 2}}, {641, 479, {64, 64, 4}},
+                                  {641, 479, {24, 24, 2}}, {640, 480, {40, 40, 3}}};
+
+Image<float> noisyCorridor(const Camera& camera) {
+  Image<float> depth = renderCorridor(camera);
+  addSensorNoise(depth, 0.5, 3);
+  return depth;
+}
+
+/// Sums of a node straight from the pixels, in double.
+TileMoments sumPixels(const MomentPyramid& pyramid, const TileRect& rect,
+                      const Image<float>& depth) {
+  TileMoments moments;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      const float q = DepthTraits<float>::inverse(depth(x, y));
+      const Eigen::Vector2f tangents = pyramid.tangents(x, y);
+      if (q > 0.0F) moments.add(tangents.x(), tangents.y(), q);
+    }
+  }
+  return moments;
+}
+
+void expectClose(const TileMoments& a, const TileMoments& b) {
+  ASSERT_EQ(a.n, b.n);
+  // Float sums of a few thousand terms, tangents within 0.1 of the origin.
+  const double tolerance = 2e-5 * std::max(1.0, a.n) * 0.1;
+  EXPECT_NEAR(a.u, b.u, tolerance);
+  EXPECT_NEAR(a.v, b.v, tolerance);
+  EXPECT_NEAR(a.uu, b.uu, tolerance);
+  EXPECT_NEAR(a.uv, b.uv, tolerance);
+  EXPECT_NEAR(a.vv, b.vv, tolerance);
+  EXPECT_NEAR(a.q, b.q, 10.0 * tolerance);
+  EXPECT_NEAR(a.qu, b.qu, tolerance);
+  EXPECT_NEAR(a.qv, b.qv, tolerance);
+  EXPECT_NEAR(a.qq, b.qq, 10.0 * tolerance);
+}
+
+TEST(MomentPyramid, EqualsTheSumsOverPixelsOnEveryLevel) {
+  for (const Case& c : kCases) {
+    const auto camera = std::make_shared<const Camera>(testCamera(c.width, c.height));
+    const Image<float> depth = noisyCorridor(*camera);
+    MomentPyramid pyramid(camera, c.layout, vectorTileKernels());
+    ASSERT_TRUE(pyramid.read(depth.view(), nullptr));
+    const QuadtreeGrid& grid = pyramid.grid();
+    for (int level = 0; level < grid.levels(); ++level) {
+      for (int row = 0; row < grid.rows(level); row += 1 + level) {
+        for (int column = 0; column < grid.columns(level); column += 1 + level) {
+          const QuadtreeNode node{level, column, row};
+          const TileRect rect = grid.rect(node);
+          ASSERT_EQ(pyramid.area(node), rect.area());
+          const TileMoments expected = sumPixels(pyramid, rect, depth);
+          expectClose(pyramid.moments(node), expected);
+          if (expected.n < 3.0) continue;
+          // Compare planes where it matters: at the tile's own pixels.
+          const Eigen::Vector3d fit = pyramid.regress(node);
+          const Eigen::Vector3d reference = regressInverseDepth(expected);
+          const Eigen::Vector3d corner(pyramid.tangents(rect.x, rect.y).x(),
+                                       pyramid.tangents(rect.x, rect.y).y(), 1.0);
+          ASSERT_NEAR(fit.dot(corner), reference.dot(corner), 2e-4)
+              << rect.width << "x" << rect.height << " n " << expected.n;
+        }
+      }
+    }
+  }
+}
+
+TEST(MomentPyramid, ReadsBothDepthEncodingsAlike) {
+  const auto camera = std::make_shared<const Camera>(testCamera());
+  const Image<std::uint16_t> millimetres = toMillimetres(noisyCorridor(*camera));
+  Image<float> metres(millimetres.width(), millimetres.height());
+  for (int y = 0; y < metres.height(); ++y) {
+    for (int x = 0; x < metres.width(); ++x) {
+      metres(x, y) = static_cast<float>(millimetres(x, y)) / 1000.0F;
+    }
+  }
+  MomentPyramid a(camera, {64, 64, 4}, vectorTileKernels());
+  MomentPyramid b(camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(a.read(millimetres.view(), nullptr));
+  ASSERT_TRUE(b.read(metres.view(), nullptr));
+  for (int row = 0; row < a.grid().rows(0); ++row) {
+    for (int column = 0; column < a.grid().columns(0); ++column) {
+      expectClose(a.moments({0, column, row}), b.moments({0, column, row}));
+    }
+  }
+}
+
+TEST(MomentPyramid, ReadsRowsWithAStride) {
+  const auto camera = std::make_shared<const Camera>(testCamera(320, 240));
+  const Image<float> depth = noisyCorridor(*camera);
+  Image<float> wide(400, 240, -1.0F);
+  for (int y = 0; y < 240; ++y) std::copy_n(depth.row(y), 320, wide.row(y));
+  MomentPyramid a(camera, {64, 64, 4}, vectorTileKernels());
+  MomentPyramid b(camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(a.read(depth.view(), nullptr));
+  ASSERT_TRUE(b.read(ImageView<float>(wide.row(0), 320, 240, 400), nullptr));
+  for (int column = 0; column < a.grid().columns(0); ++column) {
+    expectClose(a.moments({0, column, 1}), b.moments({0, column, 1}));
+  }
+}
+
+TEST(MomentPyramid, ForgetsThePreviousImage) {
+  const auto camera = std::make_shared<const Camera>(testCamera(320, 240));
+  const Image<float> first = noisyCorridor(*camera);
+  Image<float> second = renderPlane(*camera, {0.2F, 0.1F, 0.6F});
+  addSensorNoise(second, 0.0, 9);
+  MomentPyramid used(camera, {64, 64, 4}, vectorTileKernels());
+  MomentPyramid fresh(camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(used.read(first.view(), nullptr));
+  ASSERT_TRUE(used.read(second.view(), nullptr));
+  ASSERT_TRUE(fresh.read(second.view(), nullptr));
+  for (int row = 0; row < used.grid().cellRows(); ++row) {
+    for (int column = 0; column < used.grid().cellColumns(); ++column) {
+      const QuadtreeNode node{used.grid().levels() - 1, column, row};
+      ASSERT_EQ(used.count(node), fresh.count(node));
+      if (used.count(node) == 0) continue;
+      ASSERT_EQ(used.regress(node), fresh.regress(node));
+    }
+  }
+}
+
+TEST(MomentPyramid, GivesUpWhenAsked) {
+  const auto camera = std::make_shared<const Camera>(testCamera());
+  MomentPyramid pyramid(camera, {64, 64, 4}, vectorTileKernels());
+  const Image<float> depth = renderCorridor(*camera);
+  EXPECT_FALSE(pyramid.read(depth.view(), [] { return true; }));
+}
+
+TEST(MomentPyramid, NeedsACamera) {
+  EXPECT_THROW(MomentPyramid(nullptr, {64, 64, 4}, scalarTileKernels()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace planecloud_slam
