@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/ack_tracker.h"
 
+#include <algorithm>
+
 namespace planecloud_slam {
 
 bool AckTracker::noteArrival(const KeyframeId& id) {
@@ -9,6 +11,17 @@ bool AckTracker::noteArrival(const KeyframeId& id) {
   if (std::int64_t{id.number} <= session.highest_without_gap) return false;
   if (session.settled.count(id.number) > 0) return false;
   return session.waiting.insert(id.number).second;
+}
+
+std::int64_t AckTracker::highestArrived(const KeyframeId& id) const {
+  const auto found = sessions_.find({id.robot, id.session});
+  if (found == sessions_.end()) return -1;
+  const Session& session = found->second;
+  std::int64_t highest = session.highest_without_gap;
+  for (const std::set<std::uint32_t>* numbers : {&session.waiting, &session.settled}) {
+    if (!numbers->empty()) highest = std::max(highest, std::int64_t{*numbers->rbegin()});
+  }
+  return highest;
 }
 
 void AckTracker::settle(const KeyframeId& id) {

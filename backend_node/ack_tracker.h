@@ -32,6 +32,8 @@ class AckTracker {
 
   /// A keyframe arrived and waits to be settled. False when it did before.
   bool noteArrival(const KeyframeId& id);
+  /// The highest number that arrived of the session of `id`, settled or not; -1: none.
+  [[nodiscard]] std::int64_t highestArrived(const KeyframeId& id) const;
   /// The keyframe need not come again.
   void settle(const KeyframeId& id);
 

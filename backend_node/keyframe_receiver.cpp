@@ -66,12 +66,24 @@ void KeyframeReceiver::onMessage(const KeyframeMessage& message, std::size_t sou
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     sources_[source]->has_news = true;
-    if (!sources_[source]->tracker.noteArrival(keyframe.id)) {
+    AckTracker& tracker = sources_[source]->tracker;
+    const std::int64_t expected = tracker.highestArrived(keyframe.id) + 1;
+    if (!tracker.noteArrival(keyframe.id)) {
       ++repeated_;
+      log_.info("keyframe " + toString(keyframe.id) + " came again and was ignored",
+                keyframe.id.robot);
       return;
     }
+    if (keyframe.id.number > expected) reportGap(keyframe.id, expected);
   }
   on_keyframe_(std::move(keyframe), source);
+}
+
+void KeyframeReceiver::reportGap(const KeyframeId& id, std::int64_t expected) {
+  log_.warn("keyframe " + toString(id) + " came before " + std::to_string(id.number - expected) +
+                " earlier ones, from " + std::to_string(expected) +
+                " on: they are asked for again (the frontend needs ~link/acknowledge)",
+            id.robot);
 }
 
 void KeyframeReceiver::refuse(const KeyframeMessage& message, std::size_t source,
@@ -79,9 +91,9 @@ void KeyframeReceiver::refuse(const KeyframeMessage& message, std::size_t source
   ++malformed_;
   const bool has_name = isRobotName(message.robot);
   const std::string robot = has_name ? message.robot : "with a bad name";
-  log_.error("malformed " + robot, "keyframe " + std::to_string(message.id) + " of robot " + robot +
-                                       " (session " + std::to_string(message.session) +
-                                       ") ignored: " + reason);
+  log_.error("keyframe " + std::to_string(message.id) + " of robot " + robot + " (session " +
+                 std::to_string(message.session) + ") ignored: " + reason,
+             robot);
   if (has_name) settle(source, {message.robot, message.session, message.id});
 }
 

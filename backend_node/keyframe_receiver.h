@@ -49,6 +49,7 @@ class KeyframeReceiver {
 
   void listen(ros::NodeHandle node, const std::string& name_space);
   void onMessage(const KeyframeMessage& message, std::size_t source);
+  void reportGap(const KeyframeId& id, std::int64_t expected);
   void refuse(const KeyframeMessage& message, std::size_t source, const std::string& reason);
   void acknowledgeAll();
   void acknowledge(Source& source) const;

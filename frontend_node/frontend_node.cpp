@@ -86,9 +86,9 @@ void FrontendNode::enqueue(InputFrame frame) {
   const std::size_t dropped = frames_.pushDroppingOldest(std::move(task));
   if (dropped == 0) return;
   counters_.dropped += dropped;
-  log_.warn("dropped", "tracking is slower than the camera: " + std::to_string(counters_.dropped) +
-                           " frames dropped so far; lower the camera's rate or "
-                           "~tracking/finest_width, or build with CMAKE_BUILD_TYPE=Release");
+  log_.warn("tracking is slower than the camera: " + std::to_string(counters_.dropped) +
+            " frames dropped so far; lower the camera's rate or "
+            "~tracking/finest_width, or build with CMAKE_BUILD_TYPE=Release");
 }
 
 void FrontendNode::trackFrames() {
@@ -116,7 +116,7 @@ void FrontendNode::trackFrame(const InputFrame& input) {
     if (preview_.isWanted()) previews_.pushDroppingOldest(std::move(tracked));
   } catch (const std::exception& error) {
     ++counters_.unusable;
-    log_.error("unusable", std::string("frame ignored: ") + error.what());
+    log_.error(std::string("frame ignored: ") + error.what());
   }
 }
 
@@ -127,9 +127,9 @@ void FrontendNode::reportLoss(const FrameResult& result) {
     return;
   }
   ++counters_.lost;
-  log_.warn("lost", "tracking lost: " + result.reason +
-                        "; go back to where it was tracked, move slowly and keep 0.5 to 4 m off "
-                        "(if the images look wrong: check exposure, lens cap and depth stream)");
+  log_.warn("tracking lost: " + result.reason +
+            "; go back to where it was tracked, move slowly and keep 0.5 to 4 m off "
+            "(if the images look wrong: check exposure, lens cap and depth stream)");
 }
 
 void FrontendNode::passOnCompleted() {

@@ -72,7 +72,7 @@ void RgbdInput::stop() {
 void RgbdInput::reportProblems() {
   const std::lock_guard<std::mutex> lock(monitor_mutex_);
   const std::string problem = monitor_.takeProblem(wallNow());
-  if (!problem.empty()) log_.warn("input", problem);
+  if (!problem.empty()) log_.warn(problem);
 }
 
 double RgbdInput::silence() const { return wallNow() - last_image_; }

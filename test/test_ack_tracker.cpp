@@ -47,6 +47,15 @@ TEST(AckTracker, AcknowledgesOnlyWhatIsSettled) {
   EXPECT_EQ(tracker.receipts().front().highest_without_gap, 0);
 }
 
+TEST(AckTracker, KnowsTheHighestThatArrived) {
+  AckTracker tracker;
+  EXPECT_EQ(tracker.highestArrived(id(0)), -1);
+  settleAll(tracker, {0, 4});
+  EXPECT_EQ(tracker.highestArrived(id(0)), 4);
+  tracker.noteArrival(id(9));
+  EXPECT_EQ(tracker.highestArrived(id(0)), 9);
+}
+
 TEST(AckTracker, NoticesRepetitions) {
   AckTracker tracker;
   EXPECT_TRUE(tracker.noteArrival(id(5)));
