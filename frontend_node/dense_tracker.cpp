@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMinPoints = 60;
 /// A step that makes the residuals' scale grow by more than this (log) is taken back.
 constexpr double kMaxLogGrowth = 0.02;
-constexpr int kFirstScalePasses = 4;
+constexpr int kFirstScalePasses = 10;
 constexpr double kStartSigmaGrey = 20.0;
 constexpr double kStartSigmaQ = 0.05;
 constexpr double kMinGain = 0.1;
@@ -48,7 +48,10 @@ struct DenseTracker::State {
   int iterations = 0;
 };
 
-DenseTracker::DenseTracker(const DenseTrackerOptions& options) : options_(options) {
+DenseTracker::DenseTracker(const DenseTrackerOptions& options)
+    : options_(options),
+      scale_model_{options.degrees_of_freedom, options.min_sigma_grey,
+                   options.min_sigma_inverse_depth} {
   options_.check();
 }
 
@@ -64,7 +67,7 @@ DenseTracker::State DenseTracker::chooseStart(const ReferencePoints& points,
     state.T_current_reference_prior = start.T_reference_current.front().inverse();
     computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
     for (int pass = 0; pass < kFirstScalePasses; ++pass) {
-      state.scale = reestimateScale(residuals_.view(), state.scale, options_.degrees_of_freedom);
+      state.scale = reestimateScale(residuals_.view(), state.scale, scale_model_);
     }
     const bool comparable = residuals_.seen_count >= kMinPoints;
     const double volume = comparable ? state.scale.logVolume() : std::numeric_limits<double>::max();
@@ -108,7 +111,7 @@ AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const Rg
     computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
     if (residuals_.seen_count < kMinPoints) return AlignmentStatus::kTooFewPoints;
     for (int pass = iteration == 0 ? kFirstScalePasses : 1; pass > 0; --pass) {
-      state.scale = reestimateScale(residuals_.view(), state.scale, options_.degrees_of_freedom);
+      state.scale = reestimateScale(residuals_.view(), state.scale, scale_model_);
     }
     const double volume = state.scale.logVolume();
     if (volume > best_volume + kMaxLogGrowth) {

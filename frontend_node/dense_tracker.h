@@ -69,6 +69,7 @@ class DenseTracker {
                       Alignment& alignment) const;
 
   DenseTrackerOptions options_;
+  ScaleModel scale_model_;
   Residuals residuals_;
 };
 

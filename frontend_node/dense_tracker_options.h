@@ -31,7 +31,12 @@ struct DenseTrackerOptions {
   double min_depth = 0.2;       ///< nearest depth used [m], [0.01, 100]
   double max_depth = 8.0;       ///< farthest depth used [m], [0.1, 100]
 
-  double degrees_of_freedom = 5.0;    ///< nu of the t-distribution, [1, 100]
+  double degrees_of_freedom = 5.0;  ///< nu of the t-distribution, [1, 100]
+  double min_sigma_grey = 0.3;      ///< least scale of the grey residuals, (0, 255]
+  /// Least scale of the inverse depth residuals [1/m], [1e-5, 1]. Colour and depth are exposed up
+  /// to half a frame apart and depth errors are alike over whole regions, so that depth residuals
+  /// that look perfect must not outvote the grey ones.
+  double min_sigma_inverse_depth = 0.03;
   int max_iterations = 50;            ///< per level, [1, 1000]
   double min_relative_change = 5e-4;  ///< of the cost, below it a level is done, [1e-9, 0.1]
   BrightnessModel brightness = BrightnessModel::kGainAndOffset;
@@ -55,6 +60,8 @@ struct DenseTrackerOptions {
     visit("min_depth", self.min_depth);
     visit("max_depth", self.max_depth);
     visit("degrees_of_freedom", self.degrees_of_freedom);
+    visit("min_sigma_grey", self.min_sigma_grey);
+    visit("min_sigma_inverse_depth", self.min_sigma_inverse_depth);
     visit("max_iterations", self.max_iterations);
     visit("min_relative_change", self.min_relative_change);
     visit("brightness", self.brightness);

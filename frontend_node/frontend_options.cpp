@@ -39,6 +39,8 @@ void DenseTrackerOptions::check() const {
   checkRange("tracking/min_depth", min_depth, 0.01, 100.0);
   checkRange("tracking/max_depth", max_depth, std::max(0.1, min_depth), 100.0);
   checkRange("tracking/degrees_of_freedom", degrees_of_freedom, 1.0, 100.0);
+  checkRange("tracking/min_sigma_grey", min_sigma_grey, 1e-3, 255.0);
+  checkRange("tracking/min_sigma_inverse_depth", min_sigma_inverse_depth, 1e-5, 1.0);
   checkRange("tracking/max_iterations", max_iterations, 1, 1000);
   checkRange("tracking/min_relative_change", min_relative_change, 1e-9, 0.1);
   checkRange("tracking/prior_translation", prior_translation, 0.0, 10.0);

@@ -14,20 +14,16 @@ namespace {
 using Lanes = Eigen::Array<float, ReferencePoints::kLanes, 1>;
 using LanesMap = Eigen::Map<const Lanes>;
 
-/// Rounding of the images themselves: a perfect match must not make the scale vanish.
-constexpr double kMinSigmaGrey = 0.3;
-constexpr double kMinSigmaQ = 2e-4;
-
 }  // namespace
 
 double ResidualScale::logVolume() const { return std::log(sigma_grey) + std::log(sigma_q); }
 
 ResidualScale reestimateScale(const ResidualView& residuals, const ResidualScale& previous,
-                              double nu) {
+                              const ScaleModel& model) {
   const auto inverse_grey = static_cast<float>(1.0 / previous.sigma_grey);
   const auto inverse_q = static_cast<float>(1.0 / previous.sigma_q);
   const auto slope = static_cast<float>(previous.slope);
-  const auto nu_f = static_cast<float>(nu);
+  const auto nu_f = static_cast<float>(model.degrees_of_freedom);
   Lanes seen = Lanes::Zero(), gg = Lanes::Zero(), gq = Lanes::Zero(), qq = Lanes::Zero();
   for (std::size_t i = 0; i < residuals.count; i += ReferencePoints::kLanes) {
     const Lanes grey = LanesMap(residuals.grey + i);
@@ -42,12 +38,12 @@ ResidualScale reestimateScale(const ResidualView& residuals, const ResidualScale
     qq += weight * q * q;
   }
   const double n = std::max(1.0, seen.cast<double>().sum());
-  const double var_q = std::max(qq.cast<double>().sum() / n, kMinSigmaQ * kMinSigmaQ);
+  const double var_q = std::max(qq.cast<double>().sum() / n, model.min_sigma_q * model.min_sigma_q);
   ResidualScale scale;
   scale.slope = gq.cast<double>().sum() / n / var_q;
   const double var_grey = gg.cast<double>().sum() / n - scale.slope * scale.slope * var_q;
   scale.sigma_q = std::sqrt(var_q);
-  scale.sigma_grey = std::sqrt(std::max(var_grey, kMinSigmaGrey * kMinSigmaGrey));
+  scale.sigma_grey = std::sqrt(std::max(var_grey, model.min_sigma_grey * model.min_sigma_grey));
   return scale;
 }
 

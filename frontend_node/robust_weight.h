@@ -26,11 +26,18 @@ struct ResidualView {
   std::size_t count = 0;  ///< multiple of `ReferencePoints::kLanes`
 };
 
-/// One step of the maximum-likelihood scale of a bivariate t-distribution with `nu` degrees of
-/// freedom: `Sigma = mean(w r r^T)`, `w = (nu + 2) / (nu + r^T Sigma^-1 r)` with the Sigma of
-/// `previous` in the weights (Kerl 2013b sec. III-C; 2 is the residuals' dimension, where the
-/// paper prints 1: that is the weight of a single residual).
+/// What is known of the residuals beforehand.
+struct ScaleModel {
+  double degrees_of_freedom = 5.0;  ///< nu of the t-distribution
+  double min_sigma_grey = 0.3;      ///< [grey levels]
+  double min_sigma_q = 0.03;        ///< [1/m]
+};
+
+/// One step of the maximum-likelihood scale of a bivariate t-distribution: `Sigma = mean(w r r^T)`,
+/// `w = (nu + 2) / (nu + r^T Sigma^-1 r)` with the Sigma of `previous` in the weights (Kerl 2013b
+/// sec. III-C; 2 is the residuals' dimension, where the paper prints 1: that is the weight of a
+/// single residual).
 [[nodiscard]] ResidualScale reestimateScale(const ResidualView& residuals,
-                                            const ResidualScale& previous, double nu);
+                                            const ResidualScale& previous, const ScaleModel& model);
 
 }  // namespace planecloud_slam
