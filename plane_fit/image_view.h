@@ -16,8 +16,7 @@ class ImageView {
   ImageView() = default;
   ImageView(const Pixel* pixels, int width, int height, std::ptrdiff_t stride)
       : pixels_(pixels), width_(width), height_(height), stride_(stride) {}
-  ImageView(const Pixel* pixels, int width, int height)
-      : ImageView(pixels, width, height, width) {}
+  ImageView(const Pixel* pixels, int width, int height) : ImageView(pixels, width, height, width) {}
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
@@ -52,7 +51,9 @@ class Image {
   [[nodiscard]] std::size_t size() const { return pixels_.size(); }
 
   [[nodiscard]] Pixel* row(int y) { return pixels_.data() + std::ptrdiff_t{y} * width_; }
-  [[nodiscard]] const Pixel* row(int y) const { return pixels_.data() + std::ptrdiff_t{y} * width_; }
+  [[nodiscard]] const Pixel* row(int y) const {
+    return pixels_.data() + std::ptrdiff_t{y} * width_;
+  }
   [[nodiscard]] Pixel& operator()(int x, int y) { return row(y)[x]; }
   [[nodiscard]] const Pixel& operator()(int x, int y) const { return row(y)[x]; }
   [[nodiscard]] Pixel* begin() { return pixels_.data(); }

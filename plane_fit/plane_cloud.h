@@ -52,12 +52,12 @@ struct QuadtreeLayout {
 
 /// What the fit knows of its own quality. Errors are means over the covered valid pixels.
 struct PlaneCloudStatistics {
-  double coverage = 0.0;            ///< covered share of the pixels with depth, [0, 1]
-  double point_plane_error = 0.0;   ///< mean distance of points to their planes [m]
-  double depth_error = 0.0;         ///< mean error along the viewing ray's depth [m]
-  double fit_time = 0.0;            ///< [s]
-  bool stopped_by_time = false;     ///< the time budget ended the fit
-  bool stopped_by_bytes = false;    ///< the byte budget ended the fit
+  double coverage = 0.0;           ///< covered share of the pixels with depth, [0, 1]
+  double point_plane_error = 0.0;  ///< mean distance of points to their planes [m]
+  double depth_error = 0.0;        ///< mean error along the viewing ray's depth [m]
+  double fit_time = 0.0;           ///< [s]
+  bool stopped_by_time = false;    ///< the time budget ended the fit
+  bool stopped_by_bytes = false;   ///< the byte budget ended the fit
 };
 
 /// The planes of one depth image: tiles do not overlap and come in coding order.
