@@ -21,7 +21,7 @@ enum class RectifyMode {
 /// Throws std::invalid_argument naming the choices.
 void fromString(const std::string& text, RectifyMode& mode);
 
-/// Where images come from and how they are paired. Keys: `input/...`.
+/// Where images come from and how they are paired.
 struct InputOptions {
   RectifyMode rectify = RectifyMode::kAuto;
   bool exact_sync = false;     ///< pair equal stamps only
