@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # Copyright (c) 2026, the planecloud_slam authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Waits until running nodes have mapped all they got, exports the map and prints its figures."""
+"""Lets running nodes map all they got, exports the map and prints its figures."""
 
 import argparse
 import json
@@ -11,14 +11,15 @@ import sys
 import time
 
 import rosbag
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from planecloud_slam.srv import ExportMap
 from std_srvs.srv import Trigger
 
 BACKEND = "/backend"
-QUIET = 7.0  # [s] without a new keyframe: longer than the frontend's idle_timeout
-LIMIT = 300.0  # [s]
+SETTLE = 2.5  # [s] until every node has told its new counts
+LIMIT = 120.0  # [s] for the backend to catch up
 
 
 class Diagnostics:
@@ -38,15 +39,26 @@ class Diagnostics:
                    if name in status)
 
 
-def wait_until_quiet(diagnostics):
-    """Returns when the backend has had no new keyframe for a while."""
-    begin = changed = time.monotonic()
-    before = None
-    while time.monotonic() - changed < QUIET and time.monotonic() - begin < LIMIT:
-        now = (diagnostics.total("keyframes", "frontend"), diagnostics.total("keyframes", "backend"))
-        if now != before or now[1] == 0:
-            before, changed = now, time.monotonic()
+def services(name):
+    """Full names of the services that end in `name`."""
+    _, _, offered = rosgraph.Master("/show_figures").getSystemState()
+    return sorted(service for service, _ in offered if service.endswith(name))
+
+
+def finish(diagnostics):
+    """Completes the open keyframes and waits until the backend has put everything into the map."""
+    for service in services("frontend/finish"):
+        rospy.ServiceProxy(service, Trigger)()
+    time.sleep(SETTLE)
+    deadline = time.monotonic() + LIMIT
+    while time.monotonic() < deadline:
+        sent, mapped, waiting = (
+            diagnostics.total("keyframes", "frontend"), diagnostics.total("keyframes", "backend"),
+            diagnostics.total("keyframes waiting", "backend"))
+        if mapped >= sent > 0 and waiting == 0:
+            return
         time.sleep(0.5)
+    print("warning: the backend has not mapped every keyframe", file=sys.stderr)
 
 
 def export(directory):
@@ -114,7 +126,7 @@ def main():
     rospy.init_node("show_figures", anonymous=True, disable_rostime=True, disable_signals=True)
     arguments.output.mkdir(parents=True, exist_ok=True)
     diagnostics = Diagnostics()
-    wait_until_quiet(diagnostics)
+    finish(diagnostics)
     files = export(arguments.output.resolve())
     show(diagnostics, evaluate(arguments.bag, arguments.output, files), files)
 

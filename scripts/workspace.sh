@@ -56,10 +56,14 @@ install_packages() {
     command -v sudo >/dev/null || fail "as root: apt-get install --no-install-recommends" $missing
     sudo=(sudo)
   fi
+  local options=(-q -o DPkg::Lock::Timeout=600 -o Dpkg::Use-Pty=0)
+  # Without an init system this is a container or chroot: an interrupted installation is thrown away
+  # rather than repaired, so dpkg need not wait for the disk after every file.
+  [ -d /run/systemd/system ] || options+=(-o DPkg::Options::=--force-unsafe-io)
   say "Installing $(wc -w <<<"$missing") packages"
-  "${sudo[@]}" apt-get -q -o DPkg::Lock::Timeout=600 update
-  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600 \
-    -o Dpkg::Use-Pty=0 install --no-install-recommends $missing
+  "${sudo[@]}" apt-get "${options[@]}" update
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "${options[@]}" -y install \
+    --no-install-recommends $missing
 }
 
 # The workspace that already has the checkout in its src folder, else .workspace in the checkout.
