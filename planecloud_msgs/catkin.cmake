@@ -5,8 +5,8 @@
 # come before the first target.
 
 set(PLANECLOUD_SLAM_CATKIN_DEPENDS
-  cv_bridge diagnostic_msgs geometry_msgs image_transport message_filters nav_msgs
-  rosbag roscpp sensor_msgs std_msgs std_srvs tf2 tf2_eigen tf2_msgs tf2_ros visualization_msgs)
+  diagnostic_msgs geometry_msgs image_transport message_filters nav_msgs pcl_conversions rosbag
+  roscpp sensor_msgs std_msgs std_srvs tf2_msgs tf2_ros visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS message_generation ${PLANECLOUD_SLAM_CATKIN_DEPENDS})
 include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 

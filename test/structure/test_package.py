@@ -41,8 +41,10 @@ class Package(unittest.TestCase):
         if shutil.which("catkin_lint") is None:
             self.skipTest("catkin_lint is not installed")
         lint = subprocess.run(
-            ["catkin_lint", "--offline", "--strict", "-W1", "--text", str(ROOT)],
-            text=True, capture_output=True, check=False)
+            ["catkin_lint", "--offline", "--strict", "-W1", "--text",
+             "--ignore", "uninstalled_script",  # scripts/ serves the checkout
+             "--ignore", "uninstalled_target",  # benches; test_spaces.py sees what is installed
+             str(ROOT)], text=True, capture_output=True, check=False)
         self.assertEqual(0, lint.returncode, lint.stdout + lint.stderr)
 
     def test_versions_agree(self):
