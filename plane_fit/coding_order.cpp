@@ -66,11 +66,13 @@ std::vector<TileNode> inCodingOrder(const QuadtreeGrid& grid,
     if (!occupancy.take(*node)) {
       throw std::invalid_argument(describe(tile.rect) + " overlaps another tile");
     }
-    ordered.push_back({*node, tile});
+    ordered.push_back({codingKey(grid, *node), *node, tile});
   }
-  std::sort(ordered.begin(), ordered.end(), [&](const TileNode& a, const TileNode& b) {
-    return codingKey(grid, a.node) < codingKey(grid, b.node);
-  });
+  const auto before = [](const TileNode& a, const TileNode& b) { return a.key < b.key; };
+  // What the fitter or the decoder made is in order already.
+  if (!std::is_sorted(ordered.begin(), ordered.end(), before)) {
+    std::sort(ordered.begin(), ordered.end(), before);
+  }
   return ordered;
 }
 

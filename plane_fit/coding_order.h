@@ -15,6 +15,7 @@ namespace planecloud_slam {
 
 /// A tile of a plane cloud and its node.
 struct TileNode {
+  std::uint64_t key = 0;  ///< `codingKey`
   QuadtreeNode node;
   PlanarTile tile;
 };

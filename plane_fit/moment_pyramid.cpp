@@ -78,24 +78,25 @@ void MomentPyramid::tabulateFullNodes() {
   for (std::size_t parent = levels_.size() - 1; parent-- > 0;) mergeFullNodes(parent);
   for (Level& level : levels_) {
     for (std::size_t i = 0; i < level.full.size(); ++i) {
-      FullNode& full = level.full[i];
-      if (full.n == 0.0F) continue;
-      const TangentSums& sums = level.full_tangents[i];
-      TileMoments moments;
-      moments.n = full.n;
-      moments.u = sums.u;
-      moments.v = sums.v;
-      moments.uu = sums.uu;
-      moments.uv = sums.uv;
-      moments.vv = sums.vv;
-      const TangentScatterInverse inverse = invertTangentScatter(moments);
-      full.mean_u = sums.u / full.n;
-      full.mean_v = sums.v / full.n;
-      full.inverse_uu = static_cast<float>(inverse.uu);
-      full.inverse_uv = static_cast<float>(inverse.uv);
-      full.inverse_vv = static_cast<float>(inverse.vv);
+      if (level.full[i].n > 0.0F) prepareRegression(level.full_tangents[i], level.full[i]);
     }
   }
+}
+
+void MomentPyramid::prepareRegression(const TangentSums& sums, FullNode& full) {
+  TileMoments moments;
+  moments.n = full.n;
+  moments.u = sums.u;
+  moments.v = sums.v;
+  moments.uu = sums.uu;
+  moments.uv = sums.uv;
+  moments.vv = sums.vv;
+  const TangentScatterInverse inverse = invertTangentScatter(moments);
+  full.mean_u = sums.u / full.n;
+  full.mean_v = sums.v / full.n;
+  full.inverse_uu = static_cast<float>(inverse.uu);
+  full.inverse_uv = static_cast<float>(inverse.uv);
+  full.inverse_vv = static_cast<float>(inverse.vv);
 }
 
 void MomentPyramid::tabulateCell(int column, int row) {
@@ -225,8 +226,8 @@ void MomentPyramid::merge(std::size_t parent_level) {
   for (std::size_t i = 0; i < parents.full.size(); ++i) {
     const auto columns = static_cast<std::size_t>(parents.columns);
     const std::size_t first = i / columns * 2 * child_columns + i % columns * 2;
-    const std::size_t child[4] = {first, first + 1, first + child_columns,
-                                  first + child_columns + 1};
+    const std::array<std::size_t, 4> child = {first, first + 1, first + child_columns,
+                                              first + child_columns + 1};
     DepthSums sum;
     float n = 0.0F;
     for (const std::size_t c : child) {
@@ -238,20 +239,24 @@ void MomentPyramid::merge(std::size_t parent_level) {
     }
     parents.depth[i] = sum;
     parents.counts[i] = n;
-    if (n == parents.full[i].n || n == 0.0F) continue;
-    TangentSums tangents;
-    for (const std::size_t c : child) {
-      if (children.counts[c] == 0.0F) continue;
-      const bool full = children.counts[c] == children.full[c].n;
-      const TangentSums& part = full ? children.full_tangents[c] : children.tangents[c];
-      tangents.u += part.u;
-      tangents.v += part.v;
-      tangents.uu += part.uu;
-      tangents.uv += part.uv;
-      tangents.vv += part.vv;
-    }
-    parents.tangents[i] = tangents;
+    if (n != parents.full[i].n && n != 0.0F) parents.tangents[i] = mergeTangents(children, child);
   }
+}
+
+MomentPyramid::TangentSums MomentPyramid::mergeTangents(const Level& level,
+                                                        const std::array<std::size_t, 4>& nodes) {
+  TangentSums sums;
+  for (const std::size_t node : nodes) {
+    if (level.counts[node] == 0.0F) continue;
+    const bool full = level.counts[node] == level.full[node].n;
+    const TangentSums& part = full ? level.full_tangents[node] : level.tangents[node];
+    sums.u += part.u;
+    sums.v += part.v;
+    sums.uu += part.uu;
+    sums.uv += part.uv;
+    sums.vv += part.vv;
+  }
+  return sums;
 }
 
 TileMoments MomentPyramid::moments(const QuadtreeNode& node) const {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -92,7 +93,8 @@ class MomentPyramid {
   void tabulateTangents();
   void tabulateFullNodes();
   void tabulateCell(int column, int row);
-  void mergeFullNodes(std::size_t level);
+  void mergeFullNodes(std::size_t parent_level);
+  static void prepareRegression(const TangentSums& sums, FullNode& full);
   template <typename Pixel>
   bool readPixels(ImageView<Pixel> depth, const std::function<bool()>& give_up);
   template <typename Pixel>
@@ -100,6 +102,8 @@ class MomentPyramid {
   void sumCells(int row);
   void sumHoles(int row);
   void merge(std::size_t parent_level);
+  [[nodiscard]] static TangentSums mergeTangents(const Level& level,
+                                                 const std::array<std::size_t, 4>& nodes);
 
   std::shared_ptr<const Camera> camera_;
   const TileKernels& kernels_;

@@ -45,23 +45,11 @@ std::vector<int> cellBoundaries(int initial, int levels, int length) {
   return boundaries;
 }
 
-/// The coarsest level at which [begin, end) is one node's side: first boundary index and level.
-struct Side {
-  int level;
-  int index;
-};
-std::vector<Side> findSide(const std::vector<int>& boundaries, int levels, int begin, int end) {
-  std::vector<Side> found;
-  const auto first = std::lower_bound(boundaries.begin(), boundaries.end(), begin);
-  if (first == boundaries.end() || *first != begin || end <= begin) return found;
-  const int cell = static_cast<int>(first - boundaries.begin());
-  for (int level = 0; level < levels; ++level) {
-    const int cells = 1 << (levels - 1 - level);
-    if (cell % cells == 0 && boundaries[static_cast<std::size_t>(cell + cells)] == end) {
-      found.push_back({level, cell / cells});
-    }
-  }
-  return found;
+/// Index of the cell that begins at `begin`, -1 if none does.
+int cellAt(const std::vector<int>& boundaries, int begin) {
+  const auto first = std::lower_bound(boundaries.begin(), boundaries.end() - 1, begin);
+  if (first == boundaries.end() - 1 || *first != begin) return -1;
+  return static_cast<int>(first - boundaries.begin());
 }
 
 }  // namespace
@@ -84,12 +72,13 @@ TileRect QuadtreeGrid::rect(const QuadtreeNode& node) const {
 }
 
 std::optional<QuadtreeNode> QuadtreeGrid::find(const TileRect& rect) const {
-  const std::vector<Side> columns = findSide(x_, levels_, rect.x, rect.x + rect.width);
-  const std::vector<Side> rows = findSide(y_, levels_, rect.y, rect.y + rect.height);
-  for (const Side& column : columns) {
-    for (const Side& row : rows) {
-      if (column.level == row.level) return QuadtreeNode{column.level, column.index, row.index};
-    }
+  const int column = cellAt(x_, rect.x);
+  const int row = cellAt(y_, rect.y);
+  if (column < 0 || row < 0 || rect.area() == 0) return std::nullopt;
+  for (int level = 0; level < levels_; ++level) {
+    const int cells = cellsPerSide(level);
+    const QuadtreeNode node{level, column / cells, row / cells};
+    if (this->rect(node) == rect) return node;
   }
   return std::nullopt;
 }

@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace planecloud_slam {
 
-/// The probability of a bit being 1, learnt while coding: the mean of a fast and a slow estimate.
+/// The probability of a bit being 1, learnt while coding: the mean of a fast and a slow estimate,
+/// both of which begin as running means.
 class AdaptiveBit {
  public:
   static constexpr int kPrecision = 15;
@@ -18,18 +21,32 @@ class AdaptiveBit {
     return ((static_cast<std::uint32_t>(fast_) + slow_) >> 2) | 1U;
   }
   void update(bool bit) {
-    const std::uint32_t target = bit ? 65535U - 127U : 127U;
-    fast_ = adapt(fast_, target, 4);
-    slow_ = adapt(slow_, target, 7);
+    const int target = bit ? 65535 - kMargin : kMargin;
+    fast_ = adapt(fast_, target, std::min(count_ + 2, kFastInertia));
+    slow_ = adapt(slow_, target, std::min(count_ + 2, kSlowInertia));
+    count_ = static_cast<std::uint8_t>(std::min(count_ + 1, kSlowInertia));
   }
 
  private:
-  static std::uint16_t adapt(std::uint16_t estimate, std::uint32_t target, int rate) {
-    const int step = (static_cast<int>(target) - estimate) / (1 << rate);
-    return static_cast<std::uint16_t>(estimate + step);
+  static constexpr int kMargin = 127;
+  static constexpr int kFastInertia = 16;
+  static constexpr int kSlowInertia = 128;
+  /// 2^15 / i: dividing twice a bit would take a fifth of the decoder's time.
+  static constexpr std::array<int, kSlowInertia + 1> kReciprocals = [] {
+    std::array<int, kSlowInertia + 1> reciprocals{};
+    for (int i = 1; i <= kSlowInertia; ++i) {
+      reciprocals[static_cast<std::size_t>(i)] = (1 << 15) / i;
+    }
+    return reciprocals;
+  }();
+
+  static std::uint16_t adapt(std::uint16_t estimate, int target, int inertia) {
+    const int step = (target - estimate) * kReciprocals[static_cast<std::size_t>(inertia)];
+    return static_cast<std::uint16_t>(estimate + step / (1 << 15));
   }
   std::uint16_t fast_ = 32768;
   std::uint16_t slow_ = 32768;
+  std::uint8_t count_ = 0;
 };
 
 /// Binary range encoder (carry-propagating, 32-bit range). Appends to a byte vector.

@@ -77,8 +77,10 @@ QuantisedPlane TileQuantiser::round(const Eigen::Vector3d& units, int level) con
           roundTo(units.z(), bits + 1, limit)};
 }
 
-bool TileQuantiser::isInFront(const QuantisedPlane& plane) const {
-  return plane.center - std::abs(plane.right) - std::abs(plane.down) > 0;
+bool TileQuantiser::isStable(const QuantisedPlane& plane, const TileRect& rect, const Frame& frame,
+                             int level) const {
+  if (plane.center - std::abs(plane.right) - std::abs(plane.down) <= 0) return false;
+  return round(inUnits(toTile(plane, rect, frame), frame), level) == plane;
 }
 
 std::optional<QuantisedPlane> TileQuantiser::quantise(const PlanarTile& tile, int level) const {
@@ -92,21 +94,19 @@ std::optional<QuantisedPlane> TileQuantiser::quantise(const PlanarTile& tile, in
   QuantisedPlane plane = round(units, level);
   // Rounding, or the pixel's own width, may tip a steep plane behind the camera: flatten it.
   const int slope_bits = stepBits(level) + 1;
-  while ((plane.right != 0 || plane.down != 0) && !dequantise(plane, tile.rect, level)) {
+  while ((plane.right != 0 || plane.down != 0) && !isStable(plane, tile.rect, *at, level)) {
     std::int32_t& steeper = std::abs(plane.right) > std::abs(plane.down) ? plane.right : plane.down;
     steeper = halved(steeper, slope_bits);
   }
-  if (!dequantise(plane, tile.rect, level)) return std::nullopt;
+  if (!isStable(plane, tile.rect, *at, level)) return std::nullopt;
   return plane;
 }
 
 std::optional<PlanarTile> TileQuantiser::dequantise(const QuantisedPlane& plane,
                                                     const TileRect& rect, int level) const {
   const std::optional<Frame> at = frame(rect);
-  if (!at || !isInFront(plane)) return std::nullopt;
-  PlanarTile tile = toTile(plane, rect, *at);
-  if (!(round(inUnits(tile, *at), level) == plane)) return std::nullopt;
-  return tile;
+  if (!at || !isStable(plane, rect, *at, level)) return std::nullopt;
+  return toTile(plane, rect, *at);
 }
 
 }  // namespace planecloud_slam

@@ -54,7 +54,9 @@ class TileQuantiser {
   /// Centre, right and down of a plane in units, not yet rounded.
   [[nodiscard]] Eigen::Vector3d inUnits(const PlanarTile& tile, const Frame& frame) const;
   [[nodiscard]] QuantisedPlane round(const Eigen::Vector3d& units, int level) const;
-  [[nodiscard]] bool isInFront(const QuantisedPlane& plane) const;
+  /// In front of the camera, and the integers survive the way through float coefficients.
+  [[nodiscard]] bool isStable(const QuantisedPlane& plane, const TileRect& rect, const Frame& frame,
+                              int level) const;
 
   CameraIntrinsics camera_;
   int finest_level_;

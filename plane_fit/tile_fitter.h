@@ -1,0 +1,56 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "planecloud_slam/plane_fit/moment_pyramid.h"
+#include "planecloud_slam/plane_fit/quadtree_fitter_options.h"
+
+namespace planecloud_slam {
+
+/// A plane of inverse depth in the tangents about the centre of the node's initial tile,
+/// and how well it fits.
+struct TileFit {
+  Eigen::Vector3f plane = Eigen::Vector3f::Zero();  ///< alpha, beta, gamma [1/m]
+  double count = 0.0;                               ///< pixels with depth
+  double depth_sum = 0.0;                           ///< sum of |z - z^| [m]
+  double point_plane_sum = 0.0;                     ///< sum of distances to the plane [m]
+};
+
+/// Decides on one node of Algorithm 1: depth at the corners, planarity, regression, error.
+class TileFitter {
+ public:
+  /// Keeps a reference to `pyramid`.
+  TileFitter(const MomentPyramid& pyramid, const QuadtreeFitterOptions& options)
+      : pyramid_(pyramid), options_(options) {}
+
+  /// The node's plane; empty when the node has to be subdivided.
+  [[nodiscard]] std::optional<TileFit> fit(const QuadtreeNode& node) const;
+
+ private:
+  /// A pixel with depth: tangents about the tile's origin, inverse depth.
+  struct Corner {
+    float u = 0.0F;
+    float v = 0.0F;
+    float q = 0.0F;
+  };
+  using Corners = std::array<Corner, 4>;  // upper left, upper right, lower left, lower right
+
+  [[nodiscard]] std::optional<Corners> findCorners(const TileRect& rect) const;
+  [[nodiscard]] Corner findCorner(int x, int y, int step_x, int step_y, int window) const;
+  [[nodiscard]] bool isPlanar(const Corners& corners, const Eigen::Vector2f& origin,
+                              float allowed) const;
+  [[nodiscard]] bool isInFront(const TileRect& rect, const Eigen::Vector3f& plane) const;
+  [[nodiscard]] std::optional<TileFit> measure(const TileRect& rect, const Eigen::Vector3f& plane,
+                                               const Eigen::Vector2f& origin, double count,
+                                               float mean_depth) const;
+  [[nodiscard]] float allowedError(float depth) const;
+
+  const MomentPyramid& pyramid_;
+  QuadtreeFitterOptions options_;
+};
+
+}  // namespace planecloud_slam
