@@ -18,7 +18,7 @@ struct PlaneSetOptions {
   double min_incidence = 0.12;  ///< least cosine between normal and ray [-], [0, 0.9]
   double normal_length = 0.3;   ///< makes a difference of unit normals a length [m], (0, 10]
   /// Standard deviation of a pixel's depth divided by the depth squared [1/m], [1e-5, 0.1].
-  double depth_noise = 1.4e-3;
+  double depth_noise = 1.6e-3;
   /// Pixels this far apart have independent depth errors [px], [1, 32].
   double noise_correlation = 5.0;
 
@@ -76,14 +76,14 @@ struct IcapOptions {
   double normal_floor = 0.02;     ///< least standard deviation of a normal [rad], (0, 1]
   double kernel_width = 3.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
   /// A direction is observed when its eigenvalue is this many times what the noise of the normals
-  /// alone would make [-], [1, 1000].
-  double observability = 4.0;
+  /// alone would make [-], [0, 1000]. Noise alone gives 1.
+  double observability = 1.5;
   double max_correction = 1.5;  ///< a longer way from the guess is divergence [m], (0, 100]
   double max_rotation = 0.8;    ///< a larger turn from the guess is divergence [rad], (0, 3.2]
   /// Errors that do not average out (sensor distortion): the standard deviation no observed
   /// direction goes below [m], [0, 1], and [rad], [0, 1].
-  double translation_floor = 0.01;
-  double rotation_floor = 0.005;
+  double translation_floor = 0.015;
+  double rotation_floor = 0.01;
   PlaneSetOptions planes;
   VisibilityOptions visibility;
 

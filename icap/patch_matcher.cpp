@@ -42,6 +42,7 @@ std::vector<PatchMatch> PatchMatcher::match(const Eigen::Isometry3d& T_target_so
                                             const MatchGates& gates) const {
   const std::vector<PlanePatch>& targets = target_.patches(level_);
   const KdTree<6>& index = target_.index(level_);
+  const double normal_length_squared = target_.normalLength() * target_.normalLength();
   const double max_surface = gates.distance * gates.distance;
   const double max_normal = 2.0 - 2.0 * std::cos(gates.angle);
   std::vector<PatchMatch> matches;
@@ -58,7 +59,8 @@ std::vector<PatchMatch> PatchMatcher::match(const Eigen::Isometry3d& T_target_so
       const Candidate candidate = compare(target, source, c, n);
       if (candidate.surface_squared > max_surface || candidate.normal_squared > max_normal)
         continue;
-      const double cost = candidate.surface_squared + 0.09 * candidate.normal_squared;
+      const double cost =
+          candidate.surface_squared + normal_length_squared * candidate.normal_squared;
       if (cost < best_cost) {
         best_cost = cost;
         best = &target;

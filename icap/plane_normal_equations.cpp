@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace planecloud_slam {
@@ -23,21 +24,43 @@ double variance(double target, double source, double floor) {
 
 /// One match in the source's axes.
 struct Residual {
-  Eigen::Vector3d normal;      // of the target, in source axes
-  Eigen::Vector3d point;       // source centroid
-  Eigen::Vector3d difference;  // source normal minus target normal
-  double distance = 0.0;       // of the centroid to the target's plane [m]
+  Eigen::Vector3d normal;      ///< of both patches, the surer one counting more
+  Eigen::Vector3d point;       ///< source centroid
+  Eigen::Vector3d difference;  ///< source normal minus target normal
+  double distance = 0.0;       ///< between the patches along `normal` [m]
+  double distance_variance = 0.0;
+  double normal_variance = 0.0;  ///< of `normal`, each direction
 };
 
-void addDistance(const Residual& r, double weight, double normal_variance,
-                 PlaneNormalEquations& system) {
+Residual residualOf(const PlanePatch& target, const PlanePatch& source,
+                    const Eigen::Isometry3d& T_source_target, const IcapOptions& options) {
+  const Eigen::Vector3d target_normal = T_source_target.linear() * target.normal;
+  const double target_variance = target.normal_sigma * target.normal_sigma;
+  const double source_variance = source.normal_sigma * source.normal_sigma;
+  const double target_share = source_variance / (target_variance + source_variance);
+  Residual r;
+  r.normal = (target_share * target_normal + (1.0 - target_share) * source.normal).normalized();
+  r.point = source.centroid;
+  r.difference = source.normal - target_normal;
+  const Eigen::Vector3d offset = r.point - T_source_target * target.centroid;
+  r.distance = r.normal.dot(offset);
+  r.normal_variance = target_share * target_variance + options.normal_floor * options.normal_floor;
+  // A wrong normal turns the sideways offset of the two centroids into distance.
+  const double lever = std::max(0.0, offset.squaredNorm() - r.distance * r.distance);
+  r.distance_variance =
+      variance(target.distance_sigma, source.distance_sigma, options.distance_floor) +
+      lever * r.normal_variance;
+  return r;
+}
+
+void addDistance(const Residual& r, double weight, PlaneNormalEquations& system) {
   Matrix3x6d motion;  // of the point under a twist
   motion << Eigen::Matrix3d::Identity(), -skew(r.point);
   const Vector6d jacobian = motion.transpose() * r.normal;
   system.hessian.noalias() += weight * jacobian * jacobian.transpose();
   system.gradient += weight * r.distance * jacobian;
   const Eigen::Matrix3d spread =
-      weight * normal_variance * (Eigen::Matrix3d::Identity() - r.normal * r.normal.transpose());
+      weight * r.normal_variance * (Eigen::Matrix3d::Identity() - r.normal * r.normal.transpose());
   system.noise.noalias() += motion.transpose() * spread * motion;
 }
 
@@ -61,21 +84,15 @@ PlaneNormalEquations buildNormalEquations(const std::vector<PatchMatch>& matches
   for (const PatchMatch& match : matches) {
     const PlanePatch& target = *match.target;
     const PlanePatch& source = *match.source;
-    Residual r;
-    r.normal = T_source_target.linear() * target.normal;
-    r.point = source.centroid;
-    r.difference = source.normal - r.normal;
-    r.distance = r.normal.dot(r.point - T_source_target * target.centroid);
-    const double distance_variance =
-        variance(target.distance_sigma, source.distance_sigma, options.distance_floor);
+    const Residual r = residualOf(target, source, T_source_target, options);
     const double normal_variance =
         variance(target.normal_sigma, source.normal_sigma, options.normal_floor);
-    const double squared = r.distance * r.distance / distance_variance;
+    const double squared = r.distance * r.distance / r.distance_variance;
     const double weight = kernelWeight(squared, kernel_width);
     const double squared_normal = r.difference.squaredNorm() / normal_variance;
-    const double normal_weight = kernelWeight(squared_normal, kernel_width);
-    addDistance(r, weight * normal_weight / distance_variance, normal_variance, system);
-    addNormal(r, source.normal, weight * normal_weight / normal_variance, normal_variance, system);
+    const double joint_weight = weight * kernelWeight(squared_normal, kernel_width);
+    addDistance(r, joint_weight / r.distance_variance, system);
+    addNormal(r, source.normal, joint_weight / normal_variance, normal_variance, system);
     system.weighted_error += weight * squared;
     system.weight += weight;
     system.squared_distance += r.distance * r.distance;

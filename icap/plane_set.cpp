@@ -198,6 +198,8 @@ int PlaneSet::patchAt(int x, int y) const {
 
 const KdTree<6>& PlaneSet::index(Level level) const { return *contents_->indices[indexOf(level)]; }
 
+double PlaneSet::normalLength() const { return contents_->normal_length; }
+
 Eigen::Matrix<float, 6, 1> PlaneSet::matchingPoint(const Eigen::Vector3d& centroid,
                                                    const Eigen::Vector3d& normal) const {
   return joined(centroid, normal, contents_->normal_length);

@@ -61,6 +61,9 @@ class PlaneSet {
   /// Search index over `matchingPoint` of each patch of a level, in their order.
   [[nodiscard]] const KdTree<6>& index(Level level) const;
 
+  /// What makes a difference of unit normals a length [m] (PlaneSetOptions).
+  [[nodiscard]] double normalLength() const;
+
   /// Centroid and normal as one point whose distances are lengths [m]: (c, normal_length n).
   [[nodiscard]] Eigen::Matrix<float, 6, 1> matchingPoint(const Eigen::Vector3d& centroid,
                                                          const Eigen::Vector3d& normal) const;
