@@ -10,6 +10,7 @@
 #include "planecloud_slam/backend_node/closure_consistency.h"
 #include "planecloud_slam/backend_node/closure_verifier.h"
 #include "planecloud_slam/backend_node/drift_model.h"
+#include "planecloud_slam/backend_node/join_check.h"
 #include "planecloud_slam/backend_node/keyframe_check.h"
 #include "planecloud_slam/backend_node/keyframe_map.h"
 #include "planecloud_slam/backend_node/loop_closure_detector.h"
@@ -37,6 +38,7 @@ class Backend::Impl {
         detector_(options_.loop_closure.candidates, options_.loop_closure.drift),
         verifier_(options_.loop_closure.verification, options_.icap),
         consistency_(options_.loop_closure.consistency, options_.loop_closure.drift),
+        join_check_(options_.loop_closure.consistency, options_.icap),
         plane_sets_(options_.icap.planes, kPreparedKeyframes) {}
 
   InsertionResult insert(Keyframe keyframe) {
@@ -141,7 +143,10 @@ class Backend::Impl {
   }
 
   void admit(const GraphEdge& closure, InsertionResult& result) {
-    ClosureAdmission admission = consistency_.offer(map_.graph(), closure);
+    const auto holds = [this](const ComponentJoin& join, const std::vector<GraphEdge>& closures) {
+      return join_check_.holds(map_.graph(), map_.records(), join, closures, plane_sets_);
+    };
+    ClosureAdmission admission = consistency_.offer(map_.graph(), closure, holds);
     if (admission.join) {
       map_.graph().moveComponent(admission.join->source, admission.join->T_target_source);
     }
@@ -160,6 +165,7 @@ class Backend::Impl {
   LoopClosureDetector detector_;
   ClosureVerifier verifier_;
   ClosureConsistency consistency_;
+  JoinCheck join_check_;
   PlaneSetCache plane_sets_;
   std::map<std::string, std::size_t> rejected_;
   std::uint64_t revision_ = 0;

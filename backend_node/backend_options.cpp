@@ -52,6 +52,9 @@ void ClosureVerificationOptions::check() const {
   checkRange("loop_closure/verification/max_seen_through", max_seen_through, 0.0, 1.0);
   checkRange("loop_closure/verification/max_inconsistency", max_inconsistency, 1e-3, 1e3);
   checkRange("loop_closure/verification/ambiguity_margin", ambiguity_margin, 0.0, 1.0);
+  checkRange("loop_closure/verification/unlocated_min_overlap", unlocated_min_overlap, 0.0, 1.0);
+  checkRange("loop_closure/verification/unlocated_max_seen_through", unlocated_max_seen_through,
+             0.0, 1.0);
 }
 
 void ClosureConsistencyOptions::check() const {
@@ -61,6 +64,8 @@ void ClosureConsistencyOptions::check() const {
   checkRange("loop_closure/consistency/max_path", max_path, 0.0, 1e3);
   checkRange("loop_closure/consistency/join_translation", join_translation, 1e-4, 10.0);
   checkRange("loop_closure/consistency/join_rotation", join_rotation, 1e-4, 1.0);
+  checkRange("loop_closure/consistency/join_check_path", join_check_path, 0.0, 100.0);
+  checkRange("loop_closure/consistency/join_seen_through", join_seen_through, 0.0, 1.0);
   checkRange("loop_closure/consistency/max_pending", max_pending, 1, 100000);
 }
 

@@ -20,7 +20,8 @@ std::pair<int, int> componentsOf(const PoseGraph& graph, const GraphEdge& closur
 
 }  // namespace
 
-ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEdge& closure) {
+ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEdge& closure,
+                                           const JoinJudge& holds) {
   const auto [older, younger] = componentsOf(graph, closure);
   const bool intra = older == younger;
   const ClosureComparison comparison(graph, closure, drift_);
@@ -33,7 +34,7 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
   Pending offered{closure, next_serial_++, {}};
   makeKnown(comparison, intra, offered);
   pending_.push_back(std::move(offered));
-  admission = intra ? admitIntra(graph, testimony) : admitInter(graph);
+  admission = intra ? admitIntra(graph, testimony) : admitInter(graph, holds);
   if (pending_.size() > static_cast<std::size_t>(options_.max_pending)) {
     pending_.erase(pending_.begin());
     ++admission.expired;
@@ -107,7 +108,7 @@ ClosureAdmission ClosureConsistency::admitIntra(const PoseGraph& graph,
   return admission;
 }
 
-ClosureAdmission ClosureConsistency::admitInter(const PoseGraph& graph) {
+ClosureAdmission ClosureConsistency::admitInter(const PoseGraph& graph, const JoinJudge& holds) {
   const std::vector<std::size_t> peers = peersOfLast(graph);
   const std::vector<std::size_t> group = groupAmong(peers);
   ClosureAdmission admission;
@@ -118,6 +119,7 @@ ClosureAdmission ClosureConsistency::admitInter(const PoseGraph& graph) {
                       std::back_inserter(others));
   if (2 * groupAmong(others).size() > group.size()) return admission;
   admission.join = solveComponentJoin(graph, closures, options_, drift_);
+  if (admission.join && !holds(*admission.join, closures)) admission.join.reset();
   if (!admission.join) return admission;
   // What did not agree with the group that joined is false.
   admission.rejected = others.size();

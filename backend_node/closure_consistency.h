@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <set>
 #include <vector>
@@ -29,11 +30,16 @@ struct ClosureAdmission {
 /// directions even without any one of its members and has no rival of more than half its size.
 class ClosureConsistency {
  public:
+  /// Says whether a join that `closures` propose holds otherwise.
+  using JoinJudge =
+      std::function<bool(const ComponentJoin& join, const std::vector<GraphEdge>& closures)>;
+
   ClosureConsistency(const ClosureConsistencyOptions& options, const DriftOptions& drift)
       : options_(options), drift_(drift) {}
 
-  /// Judges a verified closure between two keyframes of `graph`.
-  [[nodiscard]] ClosureAdmission offer(const PoseGraph& graph, const GraphEdge& closure);
+  /// Judges a verified closure between two keyframes of `graph`; `holds` has a last word on joins.
+  [[nodiscard]] ClosureAdmission offer(const PoseGraph& graph, const GraphEdge& closure,
+                                       const JoinJudge& holds);
 
   void clear() { pending_.clear(); }
 
@@ -52,7 +58,7 @@ class ClosureConsistency {
   void makeKnown(const ClosureComparison& comparison, bool intra, Pending& offered);
   [[nodiscard]] Testimony hear(const PoseGraph& graph, const ClosureComparison& comparison) const;
   [[nodiscard]] ClosureAdmission admitIntra(const PoseGraph& graph, const Testimony& testimony);
-  [[nodiscard]] ClosureAdmission admitInter(const PoseGraph& graph);
+  [[nodiscard]] ClosureAdmission admitInter(const PoseGraph& graph, const JoinJudge& holds);
   /// How many of `closures` share no keyframe with one another.
   [[nodiscard]] static std::size_t countIndependent(const std::vector<GraphEdge>& closures);
   /// Positions in `pending_` of those between the same components as the last.

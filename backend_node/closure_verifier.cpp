@@ -91,21 +91,23 @@ std::vector<Eigen::Isometry3d> alignmentStarts(const std::optional<RelativePoseP
   return starts;
 }
 
-ClosureVerdict ClosureVerifier::judge(const ClosureCheck& check, double view) const {
+ClosureVerdict ClosureVerifier::judge(const ClosureCheck& check, double view,
+                                      const Limits& limits) const {
   const IcapResult& result = check.alignment;
   if (result.status == IcapStatus::kTooFewPlanes) return ClosureVerdict::kTooFewPlanes;
   if (result.status == IcapStatus::kDiverged) return ClosureVerdict::kDiverged;
   if (result.unobserved.size() > kMostUnobserved) return ClosureVerdict::kUninformative;
   if (result.rms_algebraic_error > options_.max_residual) return ClosureVerdict::kLargeResidual;
-  if (check.overlap < options_.min_overlap || view < options_.min_view) {
+  if (check.overlap < limits.min_overlap || view < options_.min_view) {
     return ClosureVerdict::kLittleOverlap;
   }
-  if (check.seen_through > options_.max_seen_through) return ClosureVerdict::kSeenThrough;
+  if (check.seen_through > limits.max_seen_through) return ClosureVerdict::kSeenThrough;
   return ClosureVerdict::kAccepted;
 }
 
 ClosureCheck ClosureVerifier::align(const PlaneSet& target, const PlaneSet& source,
-                                    const Eigen::Isometry3d& T_target_source_guess) const {
+                                    const Eigen::Isometry3d& T_target_source_guess,
+                                    const Limits& limits) const {
   ClosureCheck check;
   check.alignment = icap(target, source, T_target_source_guess, icap_);
   const Eigen::Isometry3d& T_target_source = check.alignment.T_target_source;
@@ -114,7 +116,7 @@ ClosureCheck ClosureVerifier::align(const PlaneSet& target, const PlaneSet& sour
       checkVisibility(source, target, T_target_source.inverse(), icap_.visibility);
   check.overlap = std::min(forth.overlap(), back.overlap());
   check.seen_through = std::max(forth.seenThroughShare(), back.seenThroughShare());
-  check.verdict = judge(check, std::min(forth.viewShare(), back.viewShare()));
+  check.verdict = judge(check, std::min(forth.viewShare(), back.viewShare()), limits);
   return check;
 }
 
@@ -126,9 +128,12 @@ bool ClosureVerifier::agrees(const IcapResult& result, const RelativePosePrior& 
 
 ClosureCheck ClosureVerifier::verify(const PlaneSet& target, const PlaneSet& source,
                                      const std::optional<RelativePosePrior>& prior) const {
+  const Limits limits =
+      prior ? Limits{options_.min_overlap, options_.max_seen_through}
+            : Limits{options_.unlocated_min_overlap, options_.unlocated_max_seen_through};
   std::vector<ClosureCheck> checks;
   for (const Eigen::Isometry3d& start : alignmentStarts(prior)) {
-    ClosureCheck check = align(target, source, start);
+    ClosureCheck check = align(target, source, start, limits);
     if (check.verdict == ClosureVerdict::kAccepted && prior && !agrees(check.alignment, *prior)) {
       check.verdict = ClosureVerdict::kInconsistent;
     }

@@ -55,9 +55,17 @@ class ClosureVerifier {
                                     const std::optional<RelativePosePrior>& prior) const;
 
  private:
+  /// Limits of overlap and free space.
+  struct Limits {
+    double min_overlap = 0.0;
+    double max_seen_through = 0.0;
+  };
+
   [[nodiscard]] ClosureCheck align(const PlaneSet& target, const PlaneSet& source,
-                                   const Eigen::Isometry3d& T_target_source_guess) const;
-  [[nodiscard]] ClosureVerdict judge(const ClosureCheck& check, double view) const;
+                                   const Eigen::Isometry3d& T_target_source_guess,
+                                   const Limits& limits) const;
+  [[nodiscard]] ClosureVerdict judge(const ClosureCheck& check, double view,
+                                     const Limits& limits) const;
   [[nodiscard]] bool agrees(const IcapResult& result, const RelativePosePrior& prior) const;
 
   ClosureVerificationOptions options_;

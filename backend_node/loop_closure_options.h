@@ -64,6 +64,9 @@ struct ClosureVerificationOptions {
   /// A different answer from another start whose overlap comes within this of the best makes the
   /// pair ambiguous, [0, 1].
   double ambiguity_margin = 0.08;
+  /// In place of `min_overlap` and `max_seen_through` where no odometry speaks for a pair, [0, 1].
+  double unlocated_min_overlap = 0.85;
+  double unlocated_max_seen_through = 0.05;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -73,6 +76,8 @@ struct ClosureVerificationOptions {
     visit("max_seen_through", self.max_seen_through);
     visit("max_inconsistency", self.max_inconsistency);
     visit("ambiguity_margin", self.ambiguity_margin);
+    visit("unlocated_min_overlap", self.unlocated_min_overlap);
+    visit("unlocated_max_seen_through", self.unlocated_max_seen_through);
   }
   /// Throws std::invalid_argument naming key, value and range.
   void check() const;
@@ -86,7 +91,12 @@ struct ClosureConsistencyOptions {
   double max_path = 4.0;       ///< of each side between two closures that may vouch [m], [0, 1e3]
   double join_translation = 0.1;  ///< the transform that joins must be known to [m], (0, 10]
   double join_rotation = 0.05;    ///< and to [rad], (0, 1]
-  int max_pending = 400;          ///< closures that wait for others; the oldest go, [1, 100000]
+  /// Keyframes this near to the closures that join are checked for free space as well, whether they
+  /// proposed the join or not [m], [0, 100] ...
+  double join_check_path = 5.0;
+  /// ... and see through at most this share of each other's tiles on average, [0, 1].
+  double join_seen_through = 0.06;
+  int max_pending = 400;  ///< closures that wait for others; the oldest go, [1, 100000]
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -96,6 +106,8 @@ struct ClosureConsistencyOptions {
     visit("max_path", self.max_path);
     visit("join_translation", self.join_translation);
     visit("join_rotation", self.join_rotation);
+    visit("join_check_path", self.join_check_path);
+    visit("join_seen_through", self.join_seen_through);
     visit("max_pending", self.max_pending);
   }
   /// Throws std::invalid_argument naming key, value and range.

@@ -1,0 +1,85 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/backend_node/join_check.h"
+
+#include <algorithm>
+
+#include "planecloud_slam/backend_node/view_overlap.h"
+#include "planecloud_slam/icap/visibility.h"
+
+namespace planecloud_slam {
+namespace {
+
+constexpr double kLargestDistance = 2.0;  ///< of the cameras of a pair [m]
+constexpr double kLeastOverlap = 0.3;     ///< predicted, of the views of a pair
+
+/// Nodes within `path` [m] of an end of one of the closures.
+std::vector<bool> nodesNear(const PoseGraph& graph, const std::vector<GraphEdge>& closures,
+                            double path) {
+  std::vector<bool> near(static_cast<std::size_t>(graph.size()), false);
+  for (const GraphEdge& closure : closures) {
+    for (const KeyframeId& end : {closure.from, closure.to}) {
+      const std::vector<double> lengths = graph.pathLengths(graph.find(end).value());
+      for (std::size_t i = 0; i < near.size(); ++i) near[i] = near[i] || lengths[i] <= path;
+    }
+  }
+  return near;
+}
+
+}  // namespace
+
+std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
+                                                         const KeyframeRecords& records,
+                                                         const ComponentJoin& join,
+                                                         const std::vector<bool>& near) const {
+  const auto chosen = [&](int node, int component) {
+    return graph.component(node) == component && near[static_cast<std::size_t>(node)];
+  };
+  std::vector<Pair> pairs;
+  for (int source = 0; source < graph.size(); ++source) {
+    if (!chosen(source, join.source)) continue;
+    Pair best;
+    double best_overlap = kLeastOverlap;
+    for (int target = 0; target < graph.size(); ++target) {
+      if (!chosen(target, join.target)) continue;
+      const Eigen::Isometry3d T_target_source =
+          graph.pose(target).inverse() * join.T_target_source * graph.pose(source);
+      if (T_target_source.translation().norm() > kLargestDistance) continue;
+      const double overlap = mutualViewOverlap(
+          *records[static_cast<std::size_t>(target)].keyframe->planes,
+          *records[static_cast<std::size_t>(source)].keyframe->planes, T_target_source);
+      if (overlap <= best_overlap) continue;
+      best_overlap = overlap;
+      best = {target, source, T_target_source};
+    }
+    if (best_overlap > kLeastOverlap) pairs.push_back(best);
+  }
+  return pairs;
+}
+
+double JoinCheck::seenThrough(const PlaneSet& target, const PlaneSet& source,
+                              const Eigen::Isometry3d& T_target_source_guess) const {
+  // Odometry's drift between the pair and the closures alone would let surfaces seen at a grazing
+  // angle stand out, so the pair is aligned first.
+  const IcapResult alignment = icap(target, source, T_target_source_guess, icap_);
+  const Eigen::Isometry3d& T_target_source = alignment.T_target_source;
+  const VisibilityReport forth = checkVisibility(target, source, T_target_source, icap_.visibility);
+  const VisibilityReport back =
+      checkVisibility(source, target, T_target_source.inverse(), icap_.visibility);
+  return std::max(forth.seenThroughShare(), back.seenThroughShare());
+}
+
+bool JoinCheck::holds(const PoseGraph& graph, const KeyframeRecords& records,
+                      const ComponentJoin& join, const std::vector<GraphEdge>& closures,
+                      PlaneSetCache& plane_sets) const {
+  const std::vector<bool> near = nodesNear(graph, closures, options_.join_check_path);
+  const std::vector<Pair> pairs = overlappingPairs(graph, records, join, near);
+  double sum = 0.0;
+  for (const Pair& pair : pairs) {
+    sum += seenThrough(plane_sets.get(records, pair.target), plane_sets.get(records, pair.source),
+                       pair.T_target_source);
+  }
+  return sum <= options_.join_seen_through * static_cast<double>(pairs.size());
+}
+
+}  // namespace planecloud_slam
