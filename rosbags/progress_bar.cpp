@@ -29,6 +29,12 @@ void ProgressBar::advance() {
   if (done_ % step == 0 || done_ == total_) draw();
 }
 
+void ProgressBar::print(const std::string& line) const {
+  if (visible_) std::cerr << "\r\033[K";  // clears the bar's line
+  std::cerr << line << '\n';
+  if (visible_ && done_ > 0) draw();
+}
+
 void ProgressBar::draw() const {
   std::cerr << '\r' << label_ << ' ';
   if (total_ > 0) {

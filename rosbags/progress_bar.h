@@ -18,6 +18,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void advance();
+  /// A line of text on stderr, above the bar; also when there is no terminal.
+  void print(const std::string& line) const;
 
  private:
   void draw() const;

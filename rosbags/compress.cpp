@@ -1,0 +1,155 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+
+#include "planecloud_slam/rosbags/command_line.h"
+#include "planecloud_slam/rosbags/compression_pictures.h"
+#include "planecloud_slam/rosbags/compression_report.h"
+#include "planecloud_slam/rosbags/compression_trial.h"
+#include "planecloud_slam/rosbags/open_recordings.h"
+#include "planecloud_slam/rosbags/progress_bar.h"
+#include "planecloud_slam/rosbags/usage_error.h"
+
+namespace planecloud_slam {
+namespace {
+
+namespace po = boost::program_options;
+
+void addFitFlags(po::options_description& flags) {
+  const CompressionOptions defaults;
+  const auto text = [](const auto& value) { return toString(value); };
+  flags.add_options()("tolerance",
+                      po::value<double>()->default_value(defaults.plane_fit.tolerance, "0.003"),
+                      "allowed mean error of a tile at 1 m [m]")(
+      "acceptance", po::value<std::string>()->default_value(text(defaults.plane_fit.acceptance)),
+      "how the tolerance grows with depth: fixed, linear_in_depth or noise_scaled")(
+      "initial-tile", po::value<int>()->default_value(defaults.plane_fit.initial_tile_width),
+      "side of the largest tiles [px]")(
+      "min-tile", po::value<int>()->default_value(defaults.plane_fit.min_tile),
+      "side of the smallest tiles [px]")(
+      "encoding", po::value<std::string>()->default_value(text(defaults.codec.encoding)),
+      "raw (the paper's 32 bytes a plane) or compact")(
+      "time-budget", po::value<double>()->default_value(0.0), "for each fit [s], 0: none")(
+      "byte-budget", po::value<int>()->default_value(0), "for each image [B], 0: none");
+}
+
+ToolDescription describe() {
+  ToolDescription tool;
+  tool.name = "compress";
+  tool.summary =
+      "Turns every depth image of an input into planes and back, and says what it costs.";
+  tool.synopsis = "INPUT [flags]";
+  tool.notes = kInputHelp;
+  addFitFlags(tool.flags);
+  addSequenceFlags(tool.flags);
+  tool.flags.add_options()("pictures", po::value<std::string>()->value_name("DIR"),
+                           "writes restored depth, error and tiles of each image as PNG")(
+      "json", po::bool_switch(), "print the figures as JSON")(
+      "csv", po::value<std::string>()->value_name("F"), "writes a line of figures per image");
+  tool.arguments = {"INPUT"};
+  return tool;
+}
+
+CompressionOptions readOptions(const ParsedFlags& flags) {
+  CompressionOptions options;
+  options.plane_fit.tolerance = flags["tolerance"].as<double>();
+  options.plane_fit.initial_tile_width = options.plane_fit.initial_tile_height =
+      flags["initial-tile"].as<int>();
+  options.plane_fit.min_tile = flags["min-tile"].as<int>();
+  options.plane_fit.time_budget = flags["time-budget"].as<double>();
+  options.codec.byte_budget = flags["byte-budget"].as<int>();
+  try {
+    fromString(flags["acceptance"].as<std::string>(), options.plane_fit.acceptance);
+    fromString(flags["encoding"].as<std::string>(), options.codec.encoding);
+    // A plane costs 32 bytes in RAW, so the fit itself can stop; COMPACT knows only when coding.
+    if (options.codec.encoding == PlaneCloudEncoding::kRaw) {
+      options.plane_fit.byte_budget = options.codec.byte_budget;
+    }
+    options.plane_fit.check();
+    options.codec.check();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  return options;
+}
+
+/// What is written while frames come.
+class CompressionOutput {
+ public:
+  explicit CompressionOutput(const ParsedFlags& flags) {
+    if (flags.count("csv") != 0) {
+      csv_path_ = flags["csv"].as<std::string>();
+      csv_.open(csv_path_);
+      csv_ << CompressionReport::csvHeader() << '\n';
+    }
+    if (flags.count("pictures") != 0) {
+      pictures_ = flags["pictures"].as<std::string>();
+      std::filesystem::create_directories(pictures_);
+    }
+  }
+
+  void write(std::size_t index, const RgbdFrame& frame, const cv::Mat& color,
+             const CompressedFrame& compressed) {
+    if (csv_.is_open()) csv_ << CompressionReport::csvLine(compressed) << '\n';
+    if (pictures_.empty()) return;
+    char number[16];
+    std::snprintf(number, sizeof(number), "_%06zu", index);
+    writePictures(pictures_ + "/" + compressed.robot + number, frame, color, compressed);
+  }
+
+  void close() {
+    if (csv_path_.empty()) return;
+    csv_.close();
+    if (!csv_) throw std::runtime_error("cannot write '" + csv_path_ + "'");
+  }
+
+ private:
+  std::string csv_path_;
+  std::ofstream csv_;
+  std::string pictures_;
+};
+
+CompressionReport compressAll(const std::vector<std::shared_ptr<Recording>>& recordings,
+                              const CompressionOptions& options, CompressionOutput& output) {
+  CompressionReport report;
+  for (const auto& recording : recordings) {
+    CompressionTrial trial(recording->camera(), options);
+    ProgressBar progress("compress " + recording->robot(), recording->size());
+    for (std::size_t index = 0; std::optional<RgbdFrame> frame = recording->next(); ++index) {
+      CompressedFrame compressed = trial.compress(*frame, recording->trueDepth());
+      compressed.robot = recording->robot();
+      report.add(compressed);
+      output.write(index, *frame, recording->color(), compressed);
+      progress.advance();
+    }
+  }
+  return report;
+}
+
+int compress(const ParsedFlags& flags) {
+  const auto inputs = flags["INPUT"].as<std::vector<std::string>>();
+  if (inputs.size() != 1) throw UsageError("one INPUT at a time");
+  const CompressionOptions options = readOptions(flags);
+  const auto recordings = openRecordings(inputs, readSequenceFlags(flags));
+  CompressionOutput output(flags);
+  const CompressionReport report = compressAll(recordings, options, output);
+  output.close();
+  if (flags["json"].as<bool>()) {
+    std::cout << report.json().dump(2) << '\n';
+  } else {
+    std::cout << report.table();
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace planecloud_slam
+
+int main(int argc, char** argv) {
+  return planecloud_slam::runTool(planecloud_slam::describe(), argc, argv,
+                                  planecloud_slam::compress);
+}

@@ -1,0 +1,107 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/rosbags/compression_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace planecloud_slam {
+namespace {
+
+constexpr float kNearest = 0.4F;      // [m]
+constexpr float kFarthest = 8.0F;     // [m]
+constexpr float kWorstError = 0.05F;  // [m]
+constexpr double kTintShare = 0.35;
+
+bool hasDepth(float z) { return std::isfinite(z) && z > 0.0F; }
+
+std::uint8_t toLevel(float share) {
+  return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(share, 0.0F, 1.0F)));
+}
+
+/// Colours from a surface's normal: x, y, z of the camera as red, green, blue.
+cv::Scalar normalColor(const PlanarTile& tile) {
+  const Eigen::Vector3d n = tile.plane().head<3>();
+  return {127.5 * (1.0 - n.z()), 127.5 * (1.0 + n.y()), 127.5 * (1.0 + n.x())};
+}
+
+cv::Mat greyBackground(const Image<std::uint8_t>& grey) {
+  cv::Mat picture(grey.height(), grey.width(), CV_8UC3);
+  for (int y = 0; y < grey.height(); ++y) {
+    for (int x = 0; x < grey.width(); ++x) {
+      picture.at<cv::Vec3b>(y, x) = cv::Vec3b::all(grey(x, y));
+    }
+  }
+  return picture;
+}
+
+void writePicture(const std::string& path, const cv::Mat& picture) {
+  if (!cv::imwrite(path, picture)) throw std::runtime_error("cannot write '" + path + "'");
+}
+
+}  // namespace
+
+cv::Mat drawDepth(const Image<float>& depth) {
+  cv::Mat1b levels(depth.height(), depth.width(), std::uint8_t{0});
+  cv::Mat1b missing(depth.height(), depth.width(), std::uint8_t{255});
+  for (int y = 0; y < depth.height(); ++y) {
+    for (int x = 0; x < depth.width(); ++x) {
+      if (!hasDepth(depth(x, y))) continue;
+      missing(y, x) = 0;
+      levels(y, x) =
+          toLevel((1.0F / depth(x, y) - 1.0F / kFarthest) / (1.0F / kNearest - 1.0F / kFarthest));
+    }
+  }
+  cv::Mat picture;
+  cv::applyColorMap(levels, picture, cv::COLORMAP_TURBO);
+  picture.setTo(cv::Scalar::all(0), missing);
+  return picture;
+}
+
+cv::Mat drawError(const Image<float>& depth, const Image<float>& restored) {
+  cv::Mat1b levels(depth.height(), depth.width(), std::uint8_t{0});
+  cv::Mat1b uncovered(levels.size(), std::uint8_t{0});
+  cv::Mat1b missing(levels.size(), std::uint8_t{0});
+  for (int y = 0; y < depth.height(); ++y) {
+    for (int x = 0; x < depth.width(); ++x) {
+      if (!hasDepth(depth(x, y))) {
+        missing(y, x) = 255;
+      } else if (!hasDepth(restored(x, y))) {
+        uncovered(y, x) = 255;
+      } else {
+        levels(y, x) = toLevel(std::abs(depth(x, y) - restored(x, y)) / kWorstError);
+      }
+    }
+  }
+  cv::Mat picture;
+  cv::applyColorMap(levels, picture, cv::COLORMAP_VIRIDIS);
+  picture.setTo(cv::Scalar::all(128), uncovered);
+  picture.setTo(cv::Scalar::all(0), missing);
+  return picture;
+}
+
+cv::Mat drawTiles(const cv::Mat& background, const PlaneCloud& cloud) {
+  cv::Mat picture = background.clone();
+  for (const PlanarTile& tile : cloud.tiles) {
+    const cv::Rect rect(tile.rect.x, tile.rect.y, tile.rect.width, tile.rect.height);
+    const cv::Scalar color = normalColor(tile);
+    cv::Mat inside = picture(rect);
+    const cv::Mat tint(inside.size(), inside.type(), color);
+    cv::addWeighted(inside, 1.0 - kTintShare, tint, kTintShare, 0.0, inside);
+    cv::rectangle(picture, rect, color);
+  }
+  return picture;
+}
+
+void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::Mat& color,
+                   const CompressedFrame& compressed) {
+  writePicture(prefix + "_depth.png", drawDepth(compressed.depth));
+  writePicture(prefix + "_error.png", drawError(frame.depth, compressed.depth));
+  const cv::Mat background = color.empty() ? greyBackground(frame.grey) : color;
+  writePicture(prefix + "_tiles.png", drawTiles(background, compressed.cloud));
+}
+
+}  // namespace planecloud_slam
