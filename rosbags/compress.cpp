@@ -134,7 +134,9 @@ int compress(const ParsedFlags& flags) {
   const auto inputs = flags["INPUT"].as<std::vector<std::string>>();
   if (inputs.size() != 1) throw UsageError("one INPUT at a time");
   const CompressionOptions options = readOptions(flags);
-  const auto recordings = openRecordings(inputs, readSequenceFlags(flags));
+  const auto recordings =
+      openRecordings(inputs, readSequenceFlags(flags),
+                     [](const std::string& text) { std::cerr << "compress: " << text << '\n'; });
   CompressionOutput output(flags);
   const CompressionReport report = compressAll(recordings, options, output);
   output.close();

@@ -22,6 +22,7 @@ namespace {
 
 namespace po = boost::program_options;
 using Recordings = std::vector<std::shared_ptr<Recording>>;
+using Warn = std::function<void(const std::string&)>;
 
 const std::string kHallwayPrefix = "hallway:";
 constexpr int kMostHallwayRobots = 16;
@@ -76,21 +77,23 @@ Recordings openHallway(const std::string& input) {
   return recordings;
 }
 
-Recordings openBagFile(const std::string& input) {
 #ifdef PLANECLOUD_SLAM_WITH_BAGS
+Recordings openBagFile(const std::string& input, const Warn& warn) {
   Recordings recordings;
-  for (auto& recording : openBag(input)) recordings.push_back(std::move(recording));
+  for (auto& recording : openBag(input, warn)) recordings.push_back(std::move(recording));
   return recordings;
-#else
-  throw UsageError("'" + input +
-                   "': this build has no ROS and cannot read bags; build the package "
-                   "in a catkin workspace");
-#endif
 }
+#else
+Recordings openBagFile(const std::string& input, const Warn&) {
+  throw UsageError("'" + input +
+                   "': this build has no ROS and cannot read bags; build the package in a catkin "
+                   "workspace");
+}
+#endif
 
-Recordings openInput(const std::string& input, const SequenceOptions& options) {
+Recordings openInput(const std::string& input, const SequenceOptions& options, const Warn& warn) {
   if (input.rfind(kHallwayPrefix, 0) == 0) return openHallway(input);
-  if (endsWith(input, ".bag")) return openBagFile(input);
+  if (endsWith(input, ".bag")) return openBagFile(input, warn);
   if (std::filesystem::is_directory(input)) {
     return {std::make_shared<SequenceRecording>(openSequenceFolder(input, options), "robot1")};
   }
@@ -132,11 +135,12 @@ SequenceOptions readSequenceFlags(const po::variables_map& flags) {
   return options;
 }
 
-Recordings openRecordings(const std::vector<std::string>& inputs, const SequenceOptions& options) {
+Recordings openRecordings(const std::vector<std::string>& inputs, const SequenceOptions& options,
+                          const Warn& warn) {
   Recordings all;
   std::set<std::string> names;
   for (const std::string& input : inputs) {
-    for (std::shared_ptr<Recording>& recording : openInput(input, options)) {
+    for (std::shared_ptr<Recording>& recording : openInput(input, options, warn)) {
       const std::string name = freeName(recording->robot(), names);
       names.insert(name);
       if (name != recording->robot()) {

@@ -4,6 +4,7 @@
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,9 +25,10 @@ void addSequenceFlags(boost::program_options::options_description& flags);
 
 /// Opens each INPUT: a `.bag` (only in a build with ROS), a folder in the TUM layout, or
 /// `hallway:SEED[:ROBOTS]`, the built-in world rendered on the fly. One recording per robot; robots
-/// of equal names are renamed. Throws UsageError for text that is none of these, and what the
-/// recordings throw.
+/// of equal names are renamed. `warn` hears of damage that leaves something to read. Throws
+/// UsageError for text that is none of these, and what the recordings throw.
 [[nodiscard]] std::vector<std::shared_ptr<Recording>> openRecordings(
-    const std::vector<std::string>& inputs, const SequenceOptions& options);
+    const std::vector<std::string>& inputs, const SequenceOptions& options,
+    const std::function<void(const std::string&)>& warn);
 
 }  // namespace planecloud_slam

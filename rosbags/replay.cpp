@@ -89,8 +89,9 @@ std::size_t countFrames(const std::vector<std::shared_ptr<Recording>>& recording
 
 int replay(const ParsedFlags& flags) {
   ReplayOptions options = readOptions(flags);
+  const auto note = [](const std::string& text) { std::cerr << "replay: " << text << '\n'; };
   const auto recordings =
-      openRecordings(flags["INPUT"].as<std::vector<std::string>>(), readSequenceFlags(flags));
+      openRecordings(flags["INPUT"].as<std::vector<std::string>>(), readSequenceFlags(flags), note);
   ReplayResult result;
   {
     ProgressBar progress("replay", countFrames(recordings, options.robots.max_frames));
