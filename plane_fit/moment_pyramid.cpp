@@ -49,18 +49,15 @@ MomentPyramid::MomentPyramid(std::shared_ptr<const Camera> camera, const Quadtre
   tabulateFullNodes();
 }
 
-Eigen::Vector2d MomentPyramid::origin(const QuadtreeNode& node) const {
-  const TileRect root = grid_.rect({0, node.column >> node.level, node.row >> node.level});
-  const int x = root.x + root.width / 2;
-  const int y = root.y + root.height / 2;
-  return {camera_->tangentsX()(x, y), camera_->tangentsY()(x, y)};
-}
-
 void MomentPyramid::tabulateTangents() {
   for (int row = 0; row < grid_.rows(0); ++row) {
     for (int column = 0; column < grid_.columns(0); ++column) {
       const TileRect root = grid_.rect({0, column, row});
-      const Eigen::Vector2f center = origin({0, column, row}).cast<float>();
+      const int center_x = root.x + root.width / 2;
+      const int center_y = root.y + root.height / 2;
+      const Eigen::Vector2f center(camera_->tangentsX()(center_x, center_y),
+                                   camera_->tangentsY()(center_x, center_y));
+      origins_.push_back(center);
       for (int y = root.y; y < root.y + root.height; ++y) {
         for (int x = root.x; x < root.x + root.width; ++x) {
           tangents_u_[offset(x, y)] = camera_->tangentsX()(x, y) - center.x();
@@ -121,14 +118,8 @@ void MomentPyramid::mergeFullNodes(std::size_t parent_level) {
     const auto columns = static_cast<std::size_t>(children.columns);
     const std::size_t parent =
         i / columns / 2 * static_cast<std::size_t>(parents.columns) + i % columns / 2;
-    const TangentSums& child = children.full_tangents[i];
-    TangentSums& sums = parents.full_tangents[parent];
     parents.full[parent].n += children.full[i].n;
-    sums.u += child.u;
-    sums.v += child.v;
-    sums.uu += child.uu;
-    sums.uv += child.uv;
-    sums.vv += child.vv;
+    parents.full_tangents[parent] += children.full_tangents[i];
   }
 }
 
@@ -208,11 +199,7 @@ void MomentPyramid::sumHoles(int row) {
         const float mask = inverse_depth_[at] > 0.0F ? 1.0F : 0.0F;
         const float u = mask * tangents_u_[at];
         const float v = mask * tangents_v_[at];
-        sums.u += u;
-        sums.v += v;
-        sums.uu += u * u;
-        sums.uv += u * v;
-        sums.vv += v * v;
+        sums += {u, v, u * u, u * v, v * v};
       }
     }
     cells.tangents[i] = sums;
@@ -232,10 +219,7 @@ void MomentPyramid::merge(std::size_t parent_level) {
     float n = 0.0F;
     for (const std::size_t c : child) {
       n += children.counts[c];
-      sum.q += children.depth[c].q;
-      sum.qu += children.depth[c].qu;
-      sum.qv += children.depth[c].qv;
-      sum.qq += children.depth[c].qq;
+      sum += children.depth[c];
     }
     parents.depth[i] = sum;
     parents.counts[i] = n;
@@ -249,12 +233,7 @@ MomentPyramid::TangentSums MomentPyramid::mergeTangents(const Level& level,
   for (const std::size_t node : nodes) {
     if (level.counts[node] == 0.0F) continue;
     const bool full = level.counts[node] == level.full[node].n;
-    const TangentSums& part = full ? level.full_tangents[node] : level.tangents[node];
-    sums.u += part.u;
-    sums.v += part.v;
-    sums.uu += part.uu;
-    sums.uv += part.uv;
-    sums.vv += part.vv;
+    sums += full ? level.full_tangents[node] : level.tangents[node];
   }
   return sums;
 }

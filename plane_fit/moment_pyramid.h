@@ -50,7 +50,10 @@ class MomentPyramid {
   /// Regression of a node with count > 0 about `origin(node)`: (alpha, beta, gamma) [1/m].
   [[nodiscard]] Eigen::Vector3d regress(const QuadtreeNode& node) const;
   /// Tangents (u, v) of the centre of the node's initial tile.
-  [[nodiscard]] Eigen::Vector2d origin(const QuadtreeNode& node) const;
+  [[nodiscard]] const Eigen::Vector2f& origin(const QuadtreeNode& node) const {
+    const int root = (node.row >> node.level) * levels_[0].columns + (node.column >> node.level);
+    return origins_[static_cast<std::size_t>(root)];
+  }
 
   /// Inverse depth [1/m] of a pixel, 0: none.
   [[nodiscard]] float inverseDepth(int x, int y) const { return inverse_depth_[offset(x, y)]; }
@@ -65,6 +68,15 @@ class MomentPyramid {
   /// Masked sums of the tangents over the pixels with depth.
   struct TangentSums {
     float u = 0.0F, v = 0.0F, uu = 0.0F, uv = 0.0F, vv = 0.0F;
+
+    TangentSums& operator+=(const TangentSums& other) {
+      u += other.u;
+      v += other.v;
+      uu += other.uu;
+      uv += other.uv;
+      vv += other.vv;
+      return *this;
+    }
   };
   /// What a node without holes needs: known from the camera alone.
   struct FullNode {
@@ -111,6 +123,7 @@ class MomentPyramid {
   std::ptrdiff_t stride_ = 0;
   bool uniform_cells_ = false;  // all cells are as wide as the first
   std::vector<Level> levels_;
+  std::vector<Eigen::Vector2f> origins_;  // of the initial tiles
   std::vector<float> tangents_u_, tangents_v_, inverse_depth_;
   std::vector<float> columns_n_, columns_q_, columns_qu_, columns_qv_, columns_qq_;
 };

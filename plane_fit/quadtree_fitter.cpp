@@ -161,7 +161,7 @@ void QuadtreeFitter::Impl::pushChildren(const QuadtreeNode& node) {
 }
 
 void QuadtreeFitter::Impl::accept(const QuadtreeNode& node, const TileFit& fit) {
-  const Eigen::Vector2d origin = pyramid_.origin(node);
+  const Eigen::Vector2d origin = pyramid_.origin(node).cast<double>();
   const Eigen::Vector3d plane = fit.plane.cast<double>();
   PlanarTile tile;
   tile.rect = pyramid_.grid().rect(node);

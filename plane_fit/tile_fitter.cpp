@@ -20,7 +20,7 @@ std::optional<TileFit> TileFitter::fit(const QuadtreeNode& node) const {
   const int count = pyramid_.count(node);
   if (count == 0 || count < options_.min_fill * pyramid_.area(node)) return std::nullopt;
   const TileRect rect = pyramid_.grid().rect(node);
-  const Eigen::Vector2f origin = pyramid_.origin(node).cast<float>();
+  const Eigen::Vector2f& origin = pyramid_.origin(node);
   const float mean_depth = 1.0F / pyramid_.meanInverseDepth(node);
   if (options_.corner_check != CornerCheck::kNone) {
     const std::optional<Corners> corners = findCorners(rect);
@@ -36,20 +36,26 @@ std::optional<TileFitter::Corners> TileFitter::findCorners(const TileRect& rect)
   const int window = exact ? 1 : std::min(4, (std::min(rect.width, rect.height) + 1) / 2);
   const int right = rect.x + rect.width - 1;
   const int bottom = rect.y + rect.height - 1;
+  const auto find = [&](int x, int y, int step_x, int step_y, Corner& corner) {
+    corner = findCorner(x, y, step_x, step_y, window);
+    return corner.q != 0.0F;
+  };
   Corners corners;
-  corners[0] = findCorner(rect.x, rect.y, 1, 1, window);
-  corners[1] = findCorner(right, rect.y, -1, 1, window);
-  corners[2] = findCorner(rect.x, bottom, 1, -1, window);
-  corners[3] = findCorner(right, bottom, -1, -1, window);
-  for (const Corner& corner : corners) {
-    if (corner.q == 0.0F) return std::nullopt;
-  }
+  const bool found =
+      find(rect.x, rect.y, 1, 1, corners[0]) && find(right, rect.y, -1, 1, corners[1]) &&
+      find(rect.x, bottom, 1, -1, corners[2]) && find(right, bottom, -1, -1, corners[3]);
+  if (!found) return std::nullopt;
   return corners;
 }
 
 TileFitter::Corner TileFitter::findCorner(int x, int y, int step_x, int step_y, int window) const {
-  // Diagonals outwards from the corner: the nearest valid pixel comes first.
-  for (int ring = 0; ring <= 2 * (window - 1); ++ring) {
+  const float corner = pyramid_.inverseDepth(x, y);
+  if (corner != 0.0F) {
+    const Eigen::Vector2f tangents = pyramid_.tangents(x, y);
+    return {tangents.x(), tangents.y(), corner};
+  }
+  // Diagonals inwards from the corner: the nearest valid pixel comes first.
+  for (int ring = 1; ring <= 2 * (window - 1); ++ring) {
     for (int i = std::max(0, ring - window + 1); i <= std::min(ring, window - 1); ++i) {
       const int px = x + i * step_x;
       const int py = y + (ring - i) * step_y;

@@ -41,6 +41,14 @@ struct alignas(16) DepthSums {
   float qu = 0.0F;
   float qv = 0.0F;
   float qq = 0.0F;
+
+  DepthSums& operator+=(const DepthSums& other) {
+    q += other.q;
+    qu += other.qu;
+    qv += other.qv;
+    qq += other.qq;
+    return *this;
+  }
 };
 
 /// A plane q = alpha u + beta v + gamma against the pixels of a rectangle.
