@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <vector>
 
@@ -95,7 +96,10 @@ class PlaneModel {
     const std::int32_t half = step / 2;
     const std::int32_t predicted_steps = (prediction + (prediction < 0 ? -half : half)) / step;
     residual = model.code(coder, value / step - predicted_steps);
-    return (predicted_steps + residual) * step;
+    // Only a corrupt stream reaches the limits; the quantiser refuses such planes.
+    const std::int64_t result = (std::int64_t{predicted_steps} + residual) * step;
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(result, -QuantisedPlane::kMax, QuantisedPlane::kMax));
   }
 
   const QuadtreeGrid& grid_;

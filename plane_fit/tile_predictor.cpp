@@ -8,12 +8,11 @@
 namespace planecloud_slam {
 namespace {
 
-constexpr std::int64_t kLimit = 1 << 24;
-
-/// Nearest integer of numerator / denominator (> 0), half away from zero, within +-kLimit.
+/// Nearest integer of numerator / denominator (> 0), half away from zero, within
+/// +-QuantisedPlane::kMax.
 std::int32_t divideRounding(std::int64_t numerator, std::int64_t denominator) {
   const std::int64_t magnitude = (2 * std::abs(numerator) + denominator) / (2 * denominator);
-  const std::int64_t clamped = std::min(magnitude, kLimit);
+  const std::int64_t clamped = std::min<std::int64_t>(magnitude, QuantisedPlane::kMax);
   return static_cast<std::int32_t>(numerator < 0 ? -clamped : clamped);
 }
 

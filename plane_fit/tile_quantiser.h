@@ -12,6 +12,8 @@ namespace planecloud_slam {
 /// A plane over a tile in integers: inverse depth at the tile's centre and its change from there
 /// to the right and to the lower edge, in units of `TileQuantiser::unit()`.
 struct QuantisedPlane {
+  static constexpr std::int32_t kMax = 1 << 24;  ///< no number is larger than this
+
   std::int32_t center = 0;
   std::int32_t right = 0;
   std::int32_t down = 0;
