@@ -96,7 +96,7 @@ int replay(const ParsedFlags& flags) {
   {
     ProgressBar progress("replay", countFrames(recordings, options.robots.max_frames));
     options.on_frame = [&] { progress.advance(); };
-    options.on_note = [&](const std::string& note) { progress.print("replay: " + note); };
+    options.on_note = [&](const std::string& text) { progress.print("replay: " + text); };
     result = runReplay(recordings, options);
   }
   const JudgedReplay judged = judgeReplay(std::move(result));
