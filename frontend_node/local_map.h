@@ -3,7 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
+#include <memory>
 
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
@@ -14,8 +14,9 @@ namespace planecloud_slam {
 /// How live frames update the depth of the open keyframe.
 struct LocalMapOptions {
   bool fuse = true;           ///< false: the keyframe keeps the depth it was opened with
-  double sigma = 0.003;       ///< standard deviation of one inverse depth [1/m], [1e-5, 1]
+  double sigma = 0.006;       ///< standard deviation of one inverse depth [1/m], [1e-5, 1]
   double gate = 3.0;          ///< fuse within this many standard deviations, [0.5, 20]
+  int interval = 2;           ///< every how many-th tracked frame is fused, [1, 100]
   int max_observations = 30;  ///< frames that count in a pixel's mean at most, [1, 1000]
 
   template <typename Self, typename Visit>
@@ -23,6 +24,7 @@ struct LocalMapOptions {
     visit("fuse", self.fuse);
     visit("sigma", self.sigma);
     visit("gate", self.gate);
+    visit("interval", self.interval);
     visit("max_observations", self.max_observations);
   }
 
@@ -39,6 +41,9 @@ class LocalMap {
   /// Throws std::invalid_argument when `options` or `camera` fail their check, or when the camera
   /// has distortion.
   LocalMap(const LocalMapOptions& options, const CameraIntrinsics& camera);
+  ~LocalMap();
+  LocalMap(LocalMap&&) noexcept;
+  LocalMap& operator=(LocalMap&&) noexcept;
 
   /// Opens a keyframe with `depth` [m, NaN or <= 0: none] of the camera's size.
   void open(ImageView<float> depth);
@@ -50,6 +55,7 @@ class LocalMap {
   [[nodiscard]] Image<float> depth() const;
 
  private:
+  struct RowWarp;
   void fillHoles(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_camera);
   void improvePixels(ImageView<float> depth, const Eigen::Isometry3d& T_camera_keyframe);
 
@@ -57,6 +63,8 @@ class LocalMap {
   CameraIntrinsics camera_;
   Image<float> inverse_depth_;  ///< mean [1/m], 0: none
   Image<float> observations_;   ///< frames in the mean
+  int frames_ = 0;              ///< offered to this keyframe
+  std::unique_ptr<RowWarp> warp_;
 };
 
 }  // namespace planecloud_slam
