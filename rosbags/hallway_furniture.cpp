@@ -10,7 +10,6 @@ namespace planecloud_slam {
 namespace {
 
 constexpr double kMaxDepth = 0.42;  // of what stands in a hallway [m]
-constexpr double kLongest = 1.6;    // of a single thing along the wall [m]
 
 int oneOf(const std::vector<int>& materials, SeededRandom& random) {
   return materials[static_cast<std::size_t>(
@@ -23,8 +22,8 @@ int newPoster(HallwayBuilder& builder) {
 }
 
 /// Each of these places one thing at the `from` end of a face and returns the length it took.
-double hangPoster(HallwayBuilder& builder, const WallFace& face, double from, double space) {
-  const double width = std::min(space, builder.random().uniform(0.5, 0.95));
+double hangPoster(HallwayBuilder& builder, const WallFace& face, double from) {
+  const double width = builder.random().uniform(0.5, 0.95);
   const double height = builder.random().uniform(0.55, 1.1);
   const double bottom = builder.random().uniform(0.65, 1.0);
   builder.addAtWall(face, from + 0.5 * width, {width, 0.012, height}, bottom, newPoster(builder));
@@ -112,25 +111,33 @@ double placeRadiator(HallwayBuilder& builder, const WallFace& face, double from)
   return width;
 }
 
-double placeSomething(HallwayBuilder& builder, const WallFace& face, double from) {
-  const double choice = builder.random().uniform(0.0, 1.0);
-  if (choice < 0.24) return hangPoster(builder, face, from, kLongest);
-  if (choice < 0.34) return hangNoticeBoard(builder, face, from);
-  if (choice < 0.52) return placeCabinet(builder, face, from);
-  if (choice < 0.68) return stackBoxes(builder, face, from);
-  if (choice < 0.78) return placeBin(builder, face, from);
-  if (choice < 0.84) return hangExtinguisher(builder, face, from);
-  if (choice < 0.92) return placeBench(builder, face, from);
-  return placeRadiator(builder, face, from);
-}
+using Placer = double (*)(HallwayBuilder&, const WallFace&, double from);
 
+/// What may stand or hang somewhere, how much room it needs at most [m], and how common it is.
+struct Thing {
+  Placer place;
+  double longest;
+  double weight;
+};
+constexpr Thing kThings[] = {
+    {hangPoster, 0.95, 0.24}, {hangNoticeBoard, 1.6, 0.10}, {placeCabinet, 1.0, 0.20},
+    {stackBoxes, 0.48, 0.16}, {placeBin, 0.36, 0.09},       {hangExtinguisher, 0.24, 0.05},
+    {placeBench, 1.3, 0.08},  {placeRadiator, 1.2, 0.08},
+};
+
+/// Fills a face from its start to its end with things that fit.
 void furnishFace(HallwayBuilder& builder, const WallFace& face) {
+  constexpr double kSmallest = 0.5;
   double from = builder.random().uniform(0.0, 0.25);
-  while (from + kLongest < face.length) {
-    from += placeSomething(builder, face, from) + builder.random().uniform(0.15, 0.5);
-  }
-  while (from + 0.7 < face.length) {
-    from += hangPoster(builder, face, from, face.length - from) + 0.2;
+  while (from + kSmallest < face.length) {
+    double choice = builder.random().uniform(0.0, 1.0);
+    for (const Thing& thing : kThings) {
+      choice -= thing.weight;
+      if (choice > 0.0) continue;
+      if (from + thing.longest <= face.length) from += thing.place(builder, face, from);
+      break;
+    }
+    from += builder.random().uniform(0.12, 0.45);
   }
 }
 

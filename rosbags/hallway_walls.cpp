@@ -115,10 +115,14 @@ class WallMaker {
 
   void piece(double from, double to) {
     span({from, to}, {wall_.low, wall_.high}, {0.0, kCeilingHeight}, paint());
-    span({from, to}, {wall_.low - kSkirtingDepth, wall_.high + kSkirtingDepth},
-         {0.0, kSkirtingHeight}, builder_.palette().skirting);
+    skirting(from, to);
     if (wall_.high_is_hallway) face(from, to, wall_.high, 1.0);
     if (wall_.low_is_hallway) face(from, to, wall_.low, -1.0);
+  }
+
+  void skirting(double from, double to) {
+    span({from, to}, {wall_.low - kSkirtingDepth, wall_.high + kSkirtingDepth},
+         {0.0, kSkirtingHeight}, builder_.palette().skirting);
   }
 
   void face(double from, double to, double across, double normal) {
@@ -135,7 +139,10 @@ class WallMaker {
     const Eigen::Vector2d across(wall_.low, wall_.high);
     const bool window = opening.kind == OpeningKind::kWindow;
     span({start, end}, across, {kDoorHeight, kCeilingHeight}, paint());
-    if (window) span({start, end}, across, {0.0, kSillHeight}, paint());
+    if (window) {
+      span({start, end}, across, {0.0, kSillHeight}, paint());
+      skirting(start, end);
+    }
     frame(start, end, window ? kSillHeight : 0.0);
     if (window) glaze(start, end);
     if (opening.kind == OpeningKind::kClosedDoor) closeDoor(start, end);
