@@ -62,9 +62,7 @@ void BackendNode::insert(Task task) {
 void BackendNode::reportInsertion(const KeyframeId& id, const InsertionResult& result) {
   if (result.status == InsertionStatus::kRefused || result.status == InsertionStatus::kNameClash) {
     ++refused_;
-    log_.error("keyframe " + std::to_string(id.number) + " of robot " + id.robot + " (session " +
-                   std::to_string(id.session) + ") ignored: " + result.reason,
-               id.robot);
+    log_.error(result.reason, id.robot);
   }
   for (const GraphEdge& closure : result.closures) {
     ROS_INFO_STREAM("loop closure between " << toString(closure.from) << " and "

@@ -90,10 +90,7 @@ void KeyframeReceiver::refuse(const KeyframeMessage& message, std::size_t source
                               const std::string& reason) {
   ++malformed_;
   const bool has_name = isRobotName(message.robot);
-  const std::string robot = has_name ? message.robot : "with a bad name";
-  log_.error("keyframe " + std::to_string(message.id) + " of robot " + robot + " (session " +
-                 std::to_string(message.session) + ") ignored: " + reason,
-             robot);
+  log_.error(reason, has_name ? message.robot : "");
   if (has_name) settle(source, {message.robot, message.session, message.id});
 }
 

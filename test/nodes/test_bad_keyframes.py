@@ -73,10 +73,10 @@ class BadKeyframes(unittest.TestCase):
     def expect_refusal(self, keyframe, *words):
         """One message naming the robot, the id and the reason; the map stays and grows."""
         self.publisher.publish(keyframe)
-        self.node.wait_for_words("ignored:")
-        self.assertEqual(1, len(self.node.said("ignored:")), self.node.log)
-        for text in (f"keyframe {keyframe.id} of robot ada", *words):
-            self.assertIn(text, self.node.said("ignored:")[0])
+        self.node.wait_for_words("refused:")
+        self.assertEqual(1, len(self.node.said("refused:")), self.node.log)
+        for text in (f"keyframe ada/{keyframe.session}/{keyframe.id} refused", *words):
+            self.assertIn(text, self.node.said("refused:")[0])
         self.publish_good()
         self.node.wait_for_value("keyframes", 2)
         self.expect_acknowledged(self.next_id - 1)
@@ -107,7 +107,7 @@ class BadKeyframes(unittest.TestCase):
         self.node.wait_for_value("keyframes", 2)
         keyframe = self.with_edge(math.inf)
         self.publisher.publish(keyframe)
-        self.node.wait_for_words(f"keyframe {keyframe.id} of robot ada")
+        self.node.wait_for_words(f"keyframe ada/{keyframe.session}/{keyframe.id} refused")
         self.publish_good()
         self.node.wait_for_value("keyframes", 3)
 
