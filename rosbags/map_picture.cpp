@@ -20,9 +20,11 @@ constexpr double kLargestHeight = 1000.0;  // [px]
 constexpr double kSmallestWidth = 760.0;   // so that the legend fits [px]
 constexpr double kFinestScale = 320.0;     // [px/m]
 constexpr double kOutliers = 0.002;        // share of the samples left outside at each side
+constexpr double kCoarseSpacing = 0.05;    // of samples that tell the plan's size [m]
+constexpr double kFineSpacing = 0.6;       // of samples that are painted [px]
 constexpr double kBorder = 0.25;           // around what is seen [m]
 
-constexpr PlanColor kTrue{24, 24, 24};
+constexpr PlanColor kTrue{186, 192, 200};
 constexpr PlanColor kGrey{96, 104, 114};
 constexpr PlanColor kClosure{20, 148, 92};
 constexpr PlanColor kFalseClosure{222, 28, 36};
@@ -95,10 +97,11 @@ class MapPainter {
         colors_(colorsOf(map, picture.robots)),
         component_(largestComponent(map)),
         T_view_map_(picture.T_view_map) {
-    sample();
+    sample(kCoarseSpacing);
     turn(alignWallsWithAxes(samples_));
     if (isTall()) turn(0.5 * M_PI);
     layout_ = makeLayout(samples_, allWays());
+    sample(kFineSpacing / layout_.pixels_per_metre);
   }
 
   cv::Mat paint() {
@@ -113,8 +116,9 @@ class MapPainter {
   }
 
  private:
-  void sample() {
+  void sample(double spacing) {
     SurfaceSampling sampling;
+    sampling.spacing = spacing;
     sampling.component = component_;
     sampling.T_view_map = T_view_map_;
     for (const PictureRobot& robot : picture_.robots) sampling.robots.push_back(robot.name);
@@ -167,10 +171,9 @@ class MapPainter {
   void drawRobot(PlanCanvas& canvas, std::size_t index) const {
     const PictureRobot& robot = picture_.robots[index];
     const PlanColor& color = colors_[index];
-    drawWay(canvas, robot.odometry, odometryStroke(color));
-    drawWay(canvas, robot.optimised, {PlanColor{255, 255, 255}, 5.5});
-    drawWay(canvas, robot.optimised, optimisedStroke(color));
     drawWay(canvas, robot.ground_truth, truthStroke());
+    drawWay(canvas, robot.odometry, odometryStroke(color));
+    drawWay(canvas, robot.optimised, optimisedStroke(color));
     if (robot.optimised.empty()) return;
     const Eigen::Vector2d start =
         canvas.toPixels(toGround(robot.optimised.front().pose.translation()));
@@ -190,8 +193,8 @@ class MapPainter {
       if (from == places.end() || to == places.end()) continue;
       const PlanStroke stroke = closureStroke(closure.verdict == ClosureVerdict::kFalse);
       canvas.drawLine({from->second, to->second}, stroke);
-      canvas.drawDisc(from->second, 2.5, stroke.color);
-      canvas.drawDisc(to->second, 2.5, stroke.color);
+      canvas.drawDisc(from->second, 2.2, stroke.color);
+      canvas.drawDisc(to->second, 2.2, stroke.color);
     }
   }
 
@@ -216,13 +219,13 @@ class MapPainter {
     return entries;
   }
 
-  static PlanStroke optimisedStroke(const PlanColor& color) { return {color, 3.0}; }
+  static PlanStroke optimisedStroke(const PlanColor& color) { return {color, 2.6}; }
   static PlanStroke odometryStroke(const PlanColor& color) {
-    return {color.thinned(0.6), 1.6, 5.0};
+    return {color.thinned(0.75), 1.5, 5.0};
   }
-  static PlanStroke truthStroke() { return {kTrue, 1.2, 7.0}; }
+  static PlanStroke truthStroke() { return {kTrue, 7.0}; }
   static PlanStroke closureStroke(bool is_false) {
-    return is_false ? PlanStroke{kFalseClosure, 3.0} : PlanStroke{kClosure, 1.6};
+    return is_false ? PlanStroke{kFalseClosure, 3.0} : PlanStroke{kClosure, 1.3};
   }
 
   const MapSnapshot& map_;

@@ -11,11 +11,10 @@ namespace {
 
 constexpr double kOversampling = 2.0;
 constexpr float kFacesUp = 0.8F;          // least z of the normal
-constexpr float kFacesDown = -0.5F;       // largest z of the normal of a ceiling
-constexpr float kSteep = 0.5F;            // largest |z| of the normal of a wall
+constexpr float kSteep = 0.35F;           // largest |z| of the normal of a wall
 constexpr float kFloorTolerance = 0.12F;  // [m]
-constexpr double kFloorShare = 0.13;      // of the robot's colour
-constexpr double kFurnitureShare = 0.42;
+constexpr double kFloorShare = 0.16;      // of the robot's colour
+constexpr double kFurnitureShare = 0.5;
 constexpr double kWallQuantile = 0.75;            // of the evidence at which a wall is nearly black
 const cv::Vec3f kWallColor(66.0F, 52.0F, 42.0F);  // blue first
 
@@ -94,13 +93,14 @@ cv::Mat paintPlan(const std::vector<SurfaceSample>& samples,
     const auto x = static_cast<int>(std::floor(scale * (ground.x() - layout.lower.x())));
     const auto y = static_cast<int>(std::floor(scale * (layout.upper.y() - ground.y())));
     if (x < 0 || y < 0 || x >= columns || y >= rows) continue;
-    if (sample.normal.z() < kFacesDown) continue;
+    // Neither upright nor level: the edges of things, and far surfaces that noise has turned.
+    if (sample.normal.z() < kFacesUp && std::abs(sample.normal.z()) > kSteep) continue;
     const PlanColor& color = robot_colors[static_cast<std::size_t>(sample.robot)];
     if (std::abs(sample.normal.z()) < kSteep) {
       walls.add(x, y, sample.area, 0.75F * kWallColor + 0.25F * toVector(color));
     } else if (sample.position.z() > floor_height + kFloorTolerance) {
       furniture.add(x, y, sample.area, toVector(color.thinned(kFurnitureShare)));
-    } else if (sample.normal.z() > kFacesUp) {
+    } else {
       floor.add(x, y, sample.area, toVector(color.thinned(kFloorShare)));
     }
   }
