@@ -100,7 +100,7 @@ BagWriter::BagWriter(const std::string& path) : path_(path) {
   } catch (const rosbag::BagException& error) {
     throw diskError(path, error.what());
   }
-  // lz4 halves the images at the speed of the disk; bz2 would keep a robot from playing in time.
+  // bz2 would make the images half as large, but keep a small computer from playing in time.
   bag_.setCompression(rosbag::compression::LZ4);
 }
 
@@ -122,6 +122,7 @@ void BagWriter::writeAt(const std::string& topic, const ros::Time& stamp, const 
 }
 
 template void BagWriter::writeAt(const std::string&, const ros::Time&, const nav_msgs::Odometry&);
+template void BagWriter::writeAt(const std::string&, const ros::Time&, const sensor_msgs::Image&);
 
 void BagWriter::writeCameraInfo(const CameraTopics& topics, const CameraIntrinsics& camera,
                                 const ros::Time& stamp) {
@@ -138,29 +139,34 @@ void BagWriter::writeCameraInfo(const CameraTopics& topics, const CameraIntrinsi
   write(topics.camera_info, info);
 }
 
+void BagWriter::writeImage(const std::string& topic, const CameraTopics& topics,
+                           const cv::Mat& pixels, const std::string& encoding,
+                           const ros::Time& stamp) {
+  sensor_msgs::Image message = imageMessage(pixels, encoding);
+  message.header.stamp = stamp;
+  message.header.frame_id = topics.frame;
+  write(topic, message);
+}
+
 void BagWriter::writeColor(const CameraTopics& topics, const cv::Mat& bgr, const ros::Time& stamp) {
   cv::Mat rgb;
   cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
-  sensor_msgs::Image message = imageMessage(rgb, "rgb8");
-  message.header.stamp = stamp;
-  message.header.frame_id = topics.frame;
-  write(topics.color, message);
+  writeImage(topics.color, topics, rgb, "rgb8", stamp);
+}
+
+void BagWriter::writeGrey(const CameraTopics& topics, const Image<std::uint8_t>& grey,
+                          const ros::Time& stamp) {
+  writeImage(topics.color, topics, asMat(grey, CV_8UC1), "mono8", stamp);
 }
 
 void BagWriter::writeDepth(const CameraTopics& topics, const Image<std::uint16_t>& depth,
                            const ros::Time& stamp) {
-  sensor_msgs::Image message = imageMessage(asMat(depth, CV_16UC1), "16UC1");
-  message.header.stamp = stamp;
-  message.header.frame_id = topics.frame;
-  write(topics.depth, message);
+  writeImage(topics.depth, topics, asMat(depth, CV_16UC1), "16UC1", stamp);
 }
 
 void BagWriter::writeDepth(const CameraTopics& topics, const Image<float>& depth,
                            const ros::Time& stamp) {
-  sensor_msgs::Image message = imageMessage(asMat(depth, CV_32FC1), "32FC1");
-  message.header.stamp = stamp;
-  message.header.frame_id = topics.frame;
-  write(topics.depth, message);
+  writeImage(topics.depth, topics, asMat(depth, CV_32FC1), "32FC1", stamp);
 }
 
 void BagWriter::writeGroundTruth(const std::string& topic, const StampedPose& truth) {

@@ -52,6 +52,9 @@ class BagWriter {
                        const ros::Time& stamp);
   /// `bgr`: 8UC3, written as rgb8.
   void writeColor(const CameraTopics& topics, const cv::Mat& bgr, const ros::Time& stamp);
+  /// Written as mono8.
+  void writeGrey(const CameraTopics& topics, const Image<std::uint8_t>& grey,
+                 const ros::Time& stamp);
   /// Depth in millimetres, 0: none (16UC1).
   void writeDepth(const CameraTopics& topics, const Image<std::uint16_t>& depth,
                   const ros::Time& stamp);
@@ -70,6 +73,8 @@ class BagWriter {
   }
 
  private:
+  void writeImage(const std::string& topic, const CameraTopics& topics, const cv::Mat& pixels,
+                  const std::string& encoding, const ros::Time& stamp);
   template <typename Message>
   void writeAt(const std::string& topic, const ros::Time& stamp, const Message& message);
 

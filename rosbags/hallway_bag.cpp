@@ -41,9 +41,10 @@ Transforms mountOf(const std::string& space) {
 /// One robot on its way into the bag.
 class RobotStream {
  public:
-  RobotStream(std::unique_ptr<HallwayRecording> recording, std::string space)
+  RobotStream(std::unique_ptr<HallwayRecording> recording, std::string space, bool color)
       : recording_(std::move(recording)),
         space_(std::move(space)),
+        color_(color),
         topics_(rectifiedTopics(space_)) {}
 
   /// The wheels' messages up to the next frame, then the frame; false at the end.
@@ -58,7 +59,11 @@ class RobotStream {
     }
     bag.writeGroundTruth(space_ + "/ground_truth", recording_->groundTruth()[frame_]);
     bag.writeCameraInfo(topics_, recording_->camera(), stamp);
-    bag.writeColor(topics_, recording_->color(), stamp);
+    if (color_) {
+      bag.writeColor(topics_, recording_->color(), stamp);
+    } else {
+      bag.writeGrey(topics_, frame->grey, stamp);
+    }
     bag.writeDepth(topics_, recording_->depthMillimetres(), stamp);
     ++frame_;
     return true;
@@ -81,6 +86,7 @@ class RobotStream {
 
   std::unique_ptr<HallwayRecording> recording_;
   std::string space_;
+  bool color_;
   CameraTopics topics_;
   std::size_t frame_ = 0;
   std::size_t sample_ = 0;
@@ -88,14 +94,14 @@ class RobotStream {
 
 }  // namespace
 
-void writeHallwayBag(const HallwayOptions& options, const std::string& path,
+void writeHallwayBag(const HallwayBagOptions& options, const std::string& path,
                      const std::function<void()>& progress) {
   std::vector<RobotStream> robots;
   Transforms mounts;
-  for (std::unique_ptr<HallwayRecording>& recording : makeHallwayRecordings(options)) {
-    const std::string space = options.robots > 1 ? "/" + recording->robot() : "";
+  for (std::unique_ptr<HallwayRecording>& recording : makeHallwayRecordings(options.world)) {
+    const std::string space = options.world.robots > 1 ? "/" + recording->robot() : "";
     for (const auto& transform : mountOf(space)) mounts.push_back(transform);
-    robots.emplace_back(std::move(recording), space);
+    robots.emplace_back(std::move(recording), space, options.color);
   }
   BagWriter bag(path);
   bag.writeStaticTransforms(mounts);

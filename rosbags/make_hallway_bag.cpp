@@ -30,12 +30,15 @@ ToolDescription description() {
       po::value<double>()->default_value(HallwayOptions{}.duration)->value_name("SECONDS"),
       "length of the recording; a round takes about 74 s")(
       "noise", po::value<std::string>()->default_value("astra")->value_name("astra|none"),
-      "sensor model; none: exact depth in millimetres");
+      "sensor model; none: exact depth in millimetres")(
+      "color", po::bool_switch(), "rgb8 images instead of mono8: half as much again on the disk");
   return tool;
 }
 
-HallwayOptions optionsOf(const ParsedFlags& flags) {
-  HallwayOptions options;
+HallwayBagOptions optionsOf(const ParsedFlags& flags) {
+  HallwayBagOptions bag;
+  bag.color = flags["color"].as<bool>();
+  HallwayOptions& options = bag.world;
   options.seed = flags["seed"].as<std::uint64_t>();
   options.robots = flags["robots"].as<int>();
   options.duration = flags["duration"].as<double>();
@@ -46,12 +49,13 @@ HallwayOptions optionsOf(const ParsedFlags& flags) {
     throw UsageError("--noise = " + noise + ": must be astra or none");
   }
   options.noise = noise == "astra";
-  return options;
+  return bag;
 }
 
 int run(const ParsedFlags& flags) {
-  const HallwayOptions options = optionsOf(flags);
-  const double pairs = options.duration * HallwayRecording::kFramesPerSecond * options.robots;
+  const HallwayBagOptions options = optionsOf(flags);
+  const double pairs =
+      options.world.duration * HallwayRecording::kFramesPerSecond * options.world.robots;
   ProgressBar progress("rendering", static_cast<std::size_t>(pairs) + 1);
   writeHallwayBag(options, flags["output"].as<std::string>(), [&] { progress.advance(); });
   return 0;

@@ -71,14 +71,23 @@ class BagRecordingTest : public ::testing::Test {
   std::string path_;
 };
 
+void expectEqual(const RgbdFrame& a, const RgbdFrame& b) {
+  EXPECT_EQ(a.stamp, b.stamp);
+  EXPECT_TRUE(std::equal(a.grey.begin(), a.grey.end(), b.grey.begin()));
+  for (std::size_t i = 0; i < a.depth.size(); ++i) {
+    const float z = a.depth.begin()[i];
+    ASSERT_TRUE(z == b.depth.begin()[i] || (std::isnan(z) && std::isnan(b.depth.begin()[i])));
+  }
+}
+
 TEST_F(BagRecordingTest, AHallwayBagGivesTheFramesOfTheBuiltInWorldBitForBit) {
-  HallwayOptions options;
-  options.seed = 3;
-  options.robots = 2;
-  options.duration = 0.25;
+  HallwayBagOptions options;
+  options.world.seed = 3;
+  options.world.robots = 2;
+  options.world.duration = 0.2;
   writeHallwayBag(options, path_);
   const auto bags = openBag(path_);
-  const auto worlds = makeHallwayRecordings(options);
+  const auto worlds = makeHallwayRecordings(options.world);
   ASSERT_EQ(bags.size(), 2U);
   for (std::size_t robot = 0; robot < 2; ++robot) {
     EXPECT_EQ(bags[robot]->robot(), worlds[robot]->robot());
@@ -87,14 +96,7 @@ TEST_F(BagRecordingTest, AHallwayBagGivesTheFramesOfTheBuiltInWorldBitForBit) {
     while (const std::optional<RgbdFrame> rendered = worlds[robot]->next()) {
       const std::optional<RgbdFrame> read = bags[robot]->next();
       ASSERT_TRUE(read);
-      EXPECT_EQ(read->stamp, rendered->stamp);
-      EXPECT_TRUE(std::equal(read->grey.begin(), read->grey.end(), rendered->grey.begin()));
-      for (std::size_t i = 0; i < read->depth.size(); ++i) {
-        const float a = read->depth.begin()[i];
-        const float b = rendered->depth.begin()[i];
-        ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b)));
-      }
-      EXPECT_EQ(cv::norm(bags[robot]->color(), worlds[robot]->color(), cv::NORM_INF), 0.0);
+      expectEqual(*read, *rendered);
     }
     EXPECT_FALSE(bags[robot]->next());
     const Trajectory& truth = bags[robot]->groundTruth();
@@ -102,6 +104,17 @@ TEST_F(BagRecordingTest, AHallwayBagGivesTheFramesOfTheBuiltInWorldBitForBit) {
     EXPECT_EQ(truth.back().stamp, worlds[robot]->groundTruth().back().stamp);
     EXPECT_TRUE(truth.back().pose.isApprox(worlds[robot]->groundTruth().back().pose, 1e-9));
   }
+}
+
+TEST_F(BagRecordingTest, ABagInColourHoldsTheSameGreyLevels) {
+  HallwayBagOptions options;
+  options.color = true;
+  options.world.duration = 0.05;
+  writeHallwayBag(options, path_);
+  const auto recording = std::move(openBag(path_).front());
+  HallwayRecording world(options.world);
+  expectEqual(recording->next().value(), world.next().value());
+  EXPECT_EQ(cv::norm(recording->color(), world.color(), cv::NORM_INF), 0.0);
 }
 
 TEST_F(BagRecordingTest, PairsTheImagesNearestInTimeWithin20Milliseconds) {
