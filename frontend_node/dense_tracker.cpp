@@ -11,8 +11,13 @@ namespace planecloud_slam {
 namespace {
 
 constexpr std::size_t kMinPoints = 60;
-/// A step that makes the residuals' scale grow by more than this (log) is taken back.
+/// Steps that leave the residuals' scale larger than the best by more than this (log) are taken
+/// back when several in a row do not lead below it.
 constexpr double kMaxLogGrowth = 0.02;
+constexpr int kMaxWorseSteps = 4;
+/// Weak prior of a brightness step: 100 grey levels, a factor of two.
+constexpr double kOffsetInformation = 1e-4;
+constexpr double kGainInformation = 1.0 / (64.0 * 64.0);
 constexpr int kFirstScalePasses = 10;
 constexpr double kStartSigmaGrey = 20.0;
 constexpr double kStartSigmaQ = 0.05;
@@ -107,6 +112,7 @@ AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const Rg
                                          State& state) {
   State best = state;
   double best_volume = std::numeric_limits<double>::infinity();
+  int worse_steps = 0;
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration, ++state.iterations) {
     computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
     if (residuals_.seen_count < kMinPoints) return AlignmentStatus::kTooFewPoints;
@@ -114,7 +120,8 @@ AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const Rg
       state.scale = reestimateScale(residuals_.view(), state.scale, scale_model_);
     }
     const double volume = state.scale.logVolume();
-    if (volume > best_volume + kMaxLogGrowth) {
+    worse_steps = volume > best_volume + kMaxLogGrowth ? worse_steps + 1 : 0;
+    if (worse_steps == kMaxWorseSteps) {
       const int iterations = state.iterations;
       state = best;
       state.iterations = iterations;
@@ -124,6 +131,8 @@ AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const Rg
     state.equations = accumulateNormalEquations(points, residuals_.view(), state.scale,
                                                 options_.degrees_of_freedom);
     restrictBrightness(state.equations);
+    state.equations.matrix(6, 6) += kOffsetInformation;
+    state.equations.matrix(7, 7) += kGainInformation;
     if (volume < best_volume) {
       best_volume = volume;
       best = state;

@@ -245,9 +245,7 @@ void Frontend::finish() { impl_->endSegment(); }
 
 void Frontend::startNewSegment() { impl_->endSegment(); }
 
-void Frontend::changeCamera(const CameraIntrinsics& camera) {
-  impl_ = impl_->continueWith(camera);
-}
+void Frontend::changeCamera(const CameraIntrinsics& camera) { impl_ = impl_->continueWith(camera); }
 
 void Frontend::setNextPose(const Eigen::Isometry3d& T_odom_camera) {
   impl_->setNextPose(T_odom_camera);

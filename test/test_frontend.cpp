@@ -1,0 +1,204 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "planecloud_slam/frontend_node/frontend.h"
+#include "planecloud_slam/frontend_node/keyframe_compressor.h"
+#include "planecloud_slam/plane_fit/plane_cloud_codec.h"
+#include "synthetic_scene.h"
+
+namespace planecloud_slam {
+namespace {
+
+using synthetic::pose;
+
+constexpr double kFramePeriod = 1.0 / 15.0;
+
+/// A path to the side and forwards with a slow turn: 2.5 cm a frame.
+Eigen::Isometry3d pathPose(int i) {
+  return pose(0.02 * i - 0.3, 0.003 * i, 0.015 * i - 0.2, 0, -0.008 * i, 0.002 * i);
+}
+
+RgbdFrame pathFrame(int i) {
+  synthetic::SceneOptions scene;
+  scene.grey_noise = 2.0;
+  scene.depth_noise = 0.004;
+  scene.seed = static_cast<unsigned>(i);
+  RgbdFrame frame = synthetic::render(synthetic::camera(), pathPose(i), scene);
+  frame.stamp = 100.0 + i * kFramePeriod;
+  return frame;
+}
+
+RgbdFrame blackFrame(int i) {
+  RgbdFrame frame = pathFrame(i);
+  frame.grey = Image<std::uint8_t>(320, 240, 0);
+  return frame;
+}
+
+Frontend makeFrontend(const FrontendOptions& options = {}) {
+  return Frontend(options, synthetic::camera(), "robot1", 42);
+}
+
+/// Error of the estimated motion since frame `first` [m].
+double driftSince(int first, int i, const FrameResult& at_first, const FrameResult& at_i) {
+  const Eigen::Isometry3d truth = pathPose(first).inverse() * pathPose(i);
+  const Eigen::Isometry3d estimate = at_first.T_odom_camera.inverse() * at_i.T_odom_camera;
+  return (truth.inverse() * estimate).translation().norm();
+}
+
+TEST(Frontend, TheFirstCameraIsLevelAndLooksAlongX) {
+  Frontend frontend = makeFrontend();
+  const FrameResult result = frontend.track(pathFrame(0));
+  EXPECT_EQ(result.status, TrackingStatus::kInitialised);
+  EXPECT_TRUE((result.T_odom_camera * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d::UnitX()));
+  EXPECT_TRUE(
+      (result.T_odom_camera * Eigen::Vector3d::UnitY()).isApprox(-Eigen::Vector3d::UnitZ()));
+}
+
+TEST(Frontend, StartsWhereItIsTold) {
+  Frontend frontend = makeFrontend();
+  frontend.setNextPose(pose(1, 2, 3));
+  EXPECT_TRUE(frontend.track(pathFrame(0)).T_odom_camera.isApprox(pose(1, 2, 3)));
+}
+
+TEST(Frontend, FollowsAPathThroughSeveralKeyframes) {
+  Frontend frontend = makeFrontend();
+  const FrameResult first = frontend.track(pathFrame(0));
+  FrameResult last;
+  for (int i = 1; i <= 30; ++i) {
+    last = frontend.track(pathFrame(i));
+    ASSERT_EQ(last.status, TrackingStatus::kTracked) << i << ": " << last.reason;
+  }
+  EXPECT_LT(driftSince(0, 30, first, last), 0.008);  // 1 % of the path
+  frontend.finish();
+  const std::vector<CompletedKeyframe> completed = frontend.takeCompleted();
+  ASSERT_GE(completed.size(), 3U);
+  for (std::size_t k = 0; k < completed.size(); ++k) {
+    const Keyframe& keyframe = completed[k].keyframe;
+    EXPECT_EQ(keyframe.id, (KeyframeId{"robot1", 42, static_cast<std::uint32_t>(k)}));
+    ASSERT_EQ(keyframe.edges.size(), k == 0 ? 0U : 1U);
+    if (k == 0) continue;
+    const RelativePoseEdge& edge = keyframe.edges.front();
+    EXPECT_EQ(edge.other, completed[k - 1].keyframe.id);
+    EXPECT_TRUE((completed[k - 1].keyframe.T_odom_camera * edge.T_other_this)
+                    .isApprox(keyframe.T_odom_camera, 1e-9));
+    EXPECT_GT(edge.information.llt().matrixL().determinant(), 0.0);
+  }
+  EXPECT_TRUE(frontend.takeCompleted().empty());
+}
+
+TEST(Frontend, TheSameFramesGiveTheSameBits) {
+  Frontend a = makeFrontend();
+  Frontend b = makeFrontend();
+  for (int i = 0; i < 12; ++i) {
+    const FrameResult in_a = a.track(pathFrame(i));
+    const FrameResult in_b = b.track(pathFrame(i));
+    EXPECT_TRUE(in_a.T_odom_camera.matrix() == in_b.T_odom_camera.matrix());
+    EXPECT_TRUE(in_a.information == in_b.information);
+  }
+}
+
+TEST(Frontend, ShortDarknessIsLostAndRegainedWithoutAJump) {
+  Frontend frontend = makeFrontend();
+  const FrameResult first = frontend.track(pathFrame(0));
+  for (int i = 1; i <= 3; ++i) (void)frontend.track(pathFrame(i));
+  for (int i = 4; i <= 7; ++i) {
+    const FrameResult dark = frontend.track(blackFrame(i));
+    EXPECT_EQ(dark.status, TrackingStatus::kLost);
+    EXPECT_NE(dark.reason.find("blank"), std::string::npos);
+    EXPECT_LT(driftSince(0, 3, first, dark), 0.005);  // the pose stays where it was known
+  }
+  const FrameResult light = frontend.track(pathFrame(8));
+  ASSERT_EQ(light.status, TrackingStatus::kTracked) << light.reason;
+  EXPECT_LT(driftSince(0, 8, first, light), 0.005);
+}
+
+TEST(Frontend, LongLossBeginsANewSegment) {
+  FrontendOptions options;
+  options.lost.new_segment_after = 0.5;
+  Frontend frontend = makeFrontend(options);
+  (void)frontend.track(pathFrame(0));
+  (void)frontend.track(pathFrame(1));
+  RgbdFrame elsewhere = synthetic::render(synthetic::camera(), pose(0, 0, 0, 0, 2.5, 0));
+  elsewhere.stamp = pathFrame(3).stamp;
+  EXPECT_EQ(frontend.track(elsewhere).status, TrackingStatus::kLost);
+  elsewhere.stamp = pathFrame(20).stamp;
+  const FrameResult again = frontend.track(elsewhere);
+  EXPECT_EQ(again.status, TrackingStatus::kInitialised);
+  EXPECT_EQ(again.reference.number, 1U);
+  frontend.finish();
+  const std::vector<CompletedKeyframe> completed = frontend.takeCompleted();
+  ASSERT_EQ(completed.size(), 2U);
+  EXPECT_TRUE(completed[1].keyframe.edges.empty());
+}
+
+TEST(Frontend, NothingIsOpenedOnUselessImages) {
+  Frontend frontend = makeFrontend();
+  EXPECT_EQ(frontend.track(blackFrame(0)).status, TrackingStatus::kLost);
+  RgbdFrame no_depth = pathFrame(1);
+  no_depth.depth = Image<float>(320, 240, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(frontend.track(no_depth).status, TrackingStatus::kLost);
+  frontend.finish();
+  EXPECT_TRUE(frontend.takeCompleted().empty());
+  EXPECT_EQ(frontend.track(pathFrame(2)).status, TrackingStatus::kInitialised);
+}
+
+TEST(Frontend, TimeRunningBackwardsBeginsANewSegment) {
+  Frontend frontend = makeFrontend();
+  (void)frontend.track(pathFrame(5));
+  (void)frontend.track(pathFrame(6));
+  EXPECT_EQ(frontend.track(pathFrame(0)).status, TrackingStatus::kInitialised);
+  EXPECT_EQ(frontend.takeCompleted().size(), 1U);
+}
+
+TEST(Frontend, WheelOdometryCarriesOverAFastTurn) {
+  Frontend frontend = makeFrontend();
+  (void)frontend.track(pathFrame(0));
+  const Eigen::Isometry3d turn = pose(0, 0, 0, 0, 0.4, 0);
+  RgbdFrame turned = synthetic::render(synthetic::camera(), pathPose(0) * turn);
+  turned.stamp = pathFrame(2).stamp;
+  const FrameResult result = frontend.track(turned, pose(0.01, 0, 0, 0, 0.38, 0));
+  ASSERT_EQ(result.status, TrackingStatus::kTracked) << result.reason;
+  EXPECT_LT(rotationAngle(result.T_reference_camera.inverse() * turn), 2e-3);
+}
+
+TEST(Frontend, NamesTheCureForImagesOfAnotherSize) {
+  Frontend frontend = makeFrontend();
+  RgbdFrame frame = pathFrame(0);
+  frame.depth = Image<float>(160, 120, 1.0F);
+  try {
+    (void)frontend.track(frame);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("160 x 120"), std::string::npos);
+  }
+}
+
+TEST(Frontend, DistortedImagesAreTrackedInTheRectifiedCamera) {
+  CameraIntrinsics camera = synthetic::camera();
+  camera.distortion[0] = 0.05;
+  Frontend frontend(FrontendOptions{}, camera, "robot1", 1);
+  (void)frontend.track(pathFrame(0));
+  frontend.finish();
+  EXPECT_EQ(frontend.takeCompleted().at(0).camera, camera.rectified());
+}
+
+TEST(KeyframeCompressor, FitsEncodesAndDescribesAKeyframe) {
+  Frontend frontend = makeFrontend();
+  (void)frontend.track(pathFrame(0));
+  frontend.finish();
+  KeyframeCompressor compressor{FrontendOptions{}};
+  const Keyframe keyframe = compressor.compress(frontend.takeCompleted().at(0));
+  EXPECT_EQ(keyframe.id.robot, "robot1");
+  EXPECT_GT(keyframe.planes.plane_count, 10U);
+  EXPECT_GT(keyframe.planes.statistics.coverage, 0.5);
+  EXPECT_EQ(decode(keyframe.planes).tiles.size(), keyframe.planes.plane_count);
+  EXPECT_FALSE(keyframe.descriptor.empty());
+}
+
+}  // namespace
+}  // namespace planecloud_slam

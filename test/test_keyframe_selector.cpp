@@ -1,0 +1,61 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "planecloud_slam/frontend_node/keyframe_selector.h"
+#include "synthetic_scene.h"
+
+namespace planecloud_slam {
+namespace {
+
+using synthetic::pose;
+
+TEST(KeyframeSelector, TranslationAndRotationEachSuffice) {
+  KeyframeSelector selector(KeyframeSelectorOptions{});
+  const Matrix6d information = 1e6 * Matrix6d::Identity();
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.15, 0, 0, 0, 0.1, 0), information));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.3, 0, 0), information));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0, 0, 0, 0, 0.4, 0), information));
+}
+
+TEST(KeyframeSelector, GrowingUncertaintyEndsTheKeyframe) {
+  KeyframeSelector selector(KeyframeSelectorOptions{});
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.05, 0, 0), 1e6 * Matrix6d::Identity()));
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.06, 0, 0), 7e5 * Matrix6d::Identity()));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.07, 0, 0), 1e4 * Matrix6d::Identity()));
+  EXPECT_LT(selector.entropyRatio(), 0.85);
+  selector.reset();
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.01, 0, 0), 1e4 * Matrix6d::Identity()));
+}
+
+TEST(KeyframeSelector, EntropyIsThatOfAGaussian) {
+  // Kerl 2013b eq. (11) with Sigma = I: 3 (1 + ln 2 pi).
+  EXPECT_NEAR(poseEntropy(Matrix6d::Identity()), 3.0 * (1.0 + std::log(2.0 * M_PI)), 1e-12);
+  EXPECT_NEAR(poseEntropy(4.0 * Matrix6d::Identity()) - poseEntropy(Matrix6d::Identity()),
+              -3.0 * std::log(4.0), 1e-12);
+  EXPECT_EQ(poseEntropy(Matrix6d::Zero()), std::numeric_limits<double>::infinity());
+}
+
+TEST(KeyframeSelector, AnAlignmentWithoutInformationEndsTheKeyframe) {
+  KeyframeSelector selector(KeyframeSelectorOptions{});
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0, 0, 0), 1e6 * Matrix6d::Identity()));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0, 0, 0), Matrix6d::Zero()));
+}
+
+TEST(KeyframeSelector, NamesTheOptionOutOfRange) {
+  KeyframeSelectorOptions options;
+  options.max_translation = 0.0;
+  try {
+    const KeyframeSelector selector(options);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "keyframe/max_translation = 0: must be in [0.01, 10]");
+  }
+}
+
+}  // namespace
+}  // namespace planecloud_slam
