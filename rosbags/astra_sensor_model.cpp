@@ -86,7 +86,7 @@ Image<float> AstraSensorModel::noisyDisparity(const RenderedView& view,
     const float depth = view.depth.begin()[i];
     const float cosine = view.incidence.begin()[i];
     // The noise also decides which grazing pixels answer, so that they come in clumps.
-    if (!(cosine > grazing * (1.0F + 0.35F * noise.begin()[i]))) continue;
+    if (cosine <= grazing * std::max(0.4F, 1.0F + 0.35F * noise.begin()[i])) continue;
     if (!(depth >= static_cast<float>(options_.min_depth) && depth <= max_depth)) continue;
     const float weak = std::max(depth / max_depth, 1.0F - 2.0F * cosine);
     const float deviation = near_noise + (far_noise - near_noise) * weak * weak;

@@ -25,13 +25,13 @@ void HallwayBuilder::mixPalette(std::uint64_t seed) {
   const Eigen::Array3f paints[] = {{196, 192, 180}, {188, 194, 196}, {200, 190, 176}};
   for (const Eigen::Array3f& paint : paints) {
     const auto shade = static_cast<float>(random_.uniform(0.96, 1.04));
-    palette_.walls.push_back(addModulated(kPaint, paint * shade, 0.06F, 1.6F));
+    palette_.walls.push_back(addModulated(kPaint, paint * shade, 0.1F, 1.6F));
     materials_.back().wall = true;
     materials_.back().blotches = 0.05F;
   }
   const Eigen::Array3f leaves[] = {{150, 108, 70}, {118, 128, 140}, {164, 132, 92}};
   for (const Eigen::Array3f& leaf : leaves) {
-    palette_.door_leaves.push_back(addModulated(kWood, leaf, 0.22F, 1.3F));
+    palette_.door_leaves.push_back(addModulated(kWood, leaf, 0.16F, 1.3F));
   }
   for (int i = 0; i < 5; ++i) {
     const Eigen::Array3f color(static_cast<float>(random_.uniform(60, 200)),

@@ -137,7 +137,7 @@ void furnishFace(HallwayBuilder& builder, const WallFace& face) {
       if (from + thing.longest <= face.length) from += thing.place(builder, face, from);
       break;
     }
-    from += builder.random().uniform(0.12, 0.45);
+    from += builder.random().uniform(0.3, 0.95);
   }
 }
 

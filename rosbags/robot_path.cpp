@@ -47,8 +47,8 @@ DriveLine lineOf(DriveKind kind) {
     line.points.push_back(*stops.begin());
     std::size_t stop = 0;
     for (const Eigen::Vector2d& next : stops) {
-      if (stop == lead) line.loop_start = line.points.size() - 1;
-      if (stop++ > 0) drawTo(line, next);
+      if (stop > 0) drawTo(line, next);
+      if (stop++ == lead) line.loop_start = line.points.size() - 1;
     }
     line.points.pop_back();  // the loop's last point is its first
     return line;

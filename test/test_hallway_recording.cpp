@@ -42,11 +42,11 @@ TEST(HallwayRecording, GivesOnePairPerFifteenthOfASecondAndItsPose) {
 }
 
 TEST(HallwayRecording, RenderedNoiseFitsTheSensorsFigures) {
-  HallwayRecording recording(brief(8.0));
+  HallwayRecording recording(brief(2.0));
   std::vector<double> squares(9, 0.0);
   std::vector<double> counts(9, 0.0);
-  for (int frame = 0; frame < 3; ++frame) {
-    const RgbdFrame sensed = frameAt(recording, frame == 0 ? 0 : 35);
+  for (const int skipped : {0, 12, 12}) {
+    const RgbdFrame sensed = frameAt(recording, skipped);
     const Image<float> truth = recording.trueDepth().value();
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const double z = sensed.depth.begin()[i];
