@@ -22,6 +22,18 @@ Trajectory moved(const Eigen::Isometry3d& T, const Trajectory& trajectory) {
   return result;
 }
 
+/// The poses of `trajectory` between the first and the last stamp of `other`.
+Trajectory during(const Trajectory& other, const Trajectory& trajectory) {
+  Trajectory result;
+  for (const StampedPose& pose : trajectory) {
+    if (other.empty() || pose.stamp < other.front().stamp || pose.stamp > other.back().stamp) {
+      continue;
+    }
+    result.push_back(pose);
+  }
+  return result;
+}
+
 /// Odometry and ground truth in the frame of the map: odometry begins where the optimised way does.
 PictureRobot makePictureRobot(const JudgedReplay& replay, std::size_t index) {
   const RobotTrajectories& ways = replay.trajectories[index];
@@ -34,8 +46,8 @@ PictureRobot makePictureRobot(const JudgedReplay& replay, std::size_t index) {
     robot.odometry = moved(T_map_odom, ways.odometry);
   }
   if (replay.judgement) {
-    robot.ground_truth =
-        moved(replay.judgement->T_world_map.inverse(), replay.result.robots[index].ground_truth);
+    robot.ground_truth = moved(replay.judgement->T_world_map.inverse(),
+                               during(ways.odometry, replay.result.robots[index].ground_truth));
   }
   return robot;
 }
