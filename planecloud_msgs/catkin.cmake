@@ -6,7 +6,8 @@
 
 set(PLANECLOUD_SLAM_CATKIN_DEPENDS
   diagnostic_msgs geometry_msgs image_transport message_filters nav_msgs pcl_conversions rosbag
-  roscpp sensor_msgs std_msgs std_srvs tf2_msgs tf2_ros visualization_msgs)
+  roscpp sensor_msgs std_msgs std_srvs tf2_msgs tf2_ros topic_tools
+  visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS message_generation ${PLANECLOUD_SLAM_CATKIN_DEPENDS})
 include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 

@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planecloud_slam/plane_fit/se3.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "planecloud_slam/plane_fit/se3.h"
 
 namespace planecloud_slam {
 namespace {

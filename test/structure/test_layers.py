@@ -27,7 +27,7 @@ LIBRARIES = (
     ("image_transport", re.compile(r"image_transport/|cv_bridge/|openni")),
     ("gtest", re.compile(r"gtest/|gmock/|benchmark/")),
     ("ROS", re.compile(
-        r"ros/|rosbag/|tf2\w*/|message_filters/|diagnostic_updater/|\w+_msgs/[A-Z]|std_srvs/|"
+        r"ros/|rosbag/|topic_tools/|tf2\w*/|message_filters/|diagnostic_updater/|\w+_msgs/[A-Z]|std_srvs/|"
         r"dynamic_reconfigure/|planecloud_slam/[A-Z]")),
     ("std", re.compile(r"[a-z_0-9]+$|[a-z_0-9]+\.h$|(sys|linux|arpa|netinet)/\w+\.h$|cxxabi")),
 )
