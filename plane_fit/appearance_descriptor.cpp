@@ -12,7 +12,7 @@ namespace {
 
 // All of this is the meaning of version 1 of the bytes: change anything and the version changes.
 // After the version, one byte a cell, row by row: low half brightness, high half depth.
-constexpr std::uint8_t kVersion = 1;
+constexpr std::uint8_t kDescriptorVersion = 1;
 constexpr int kColumns = 20;
 constexpr int kRows = 12;
 constexpr std::size_t kBytes = 1 + static_cast<std::size_t>(kColumns * kRows);
@@ -91,7 +91,7 @@ Image<int> depthLevels(const ImageView<float>& depth) {
 }
 
 bool isWellFormed(const std::vector<std::uint8_t>& bytes) {
-  return bytes.size() == kBytes && bytes[0] == kVersion &&
+  return bytes.size() == kBytes && bytes[0] == kDescriptorVersion &&
          std::all_of(bytes.begin() + 1, bytes.end(), [](std::uint8_t b) { return (b & 15) != 0; });
 }
 
@@ -157,7 +157,7 @@ std::vector<std::uint8_t> makeAppearanceDescriptor(ImageView<std::uint8_t> grey,
   if (grey.width() < kColumns || grey.height() < kRows) return {};
   const Image<int> brightness = greyLevels(grey);
   const Image<int> distance = depthLevels(depth);
-  std::vector<std::uint8_t> bytes{kVersion};
+  std::vector<std::uint8_t> bytes{kDescriptorVersion};
   for (int y = 0; y < kRows; ++y) {
     for (int x = 0; x < kColumns; ++x) {
       bytes.push_back(static_cast<std::uint8_t>(brightness(x, y) + 16 * distance(x, y)));

@@ -14,7 +14,7 @@
 namespace planecloud_slam {
 namespace {
 
-constexpr std::uint32_t kVersion = 0x21;
+constexpr std::uint32_t kCompactVersion = 0x21;
 std::uint16_t crc16(const CameraIntrinsics& camera, const std::uint8_t* bytes, std::size_t size) {
   std::uint32_t crc = 0xFFFF;
   const auto add = [&crc](std::uint32_t byte) {
@@ -40,7 +40,7 @@ Draft encodeTiles(const QuadtreeGrid& grid, const CameraIntrinsics& camera, int 
                   const std::vector<CodedTile>& tiles) {
   Draft draft;
   ByteWriter writer(draft.bytes);
-  writer.u8(kVersion);
+  writer.u8(kCompactVersion);
   writer.u8(grid.layout().initial_width);
   writer.u8(grid.layout().initial_height);
   writer.u8(grid.layout().min_tile);
@@ -126,7 +126,7 @@ EncodedPlaneCloud encodeCompact(const PlaneCloud& cloud, const CodecOptions& opt
 PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   const std::vector<std::uint8_t>& bytes = encoded.bytes;
   ByteReader reader(bytes.data(), bytes.size());
-  if (reader.u8() != kVersion) {
+  if (reader.u8() != kCompactVersion) {
     throw PlaneCloudDecodeError("plane cloud: COMPACT version " + std::to_string(bytes[0]) +
                                 " is unknown here: update the receiver");
   }

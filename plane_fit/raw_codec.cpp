@@ -12,7 +12,7 @@
 namespace planecloud_slam {
 namespace {
 
-constexpr std::uint32_t kVersion = 0x11;
+constexpr std::uint32_t kRawVersion = 0x11;
 constexpr std::size_t kHeaderSize = 8;
 constexpr std::size_t kPlaneSize = 32;
 
@@ -80,7 +80,7 @@ EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options
   encoded.plane_count = static_cast<std::uint32_t>(tiles.size());
   encoded.bytes.reserve(kHeaderSize + kPlaneSize * tiles.size());
   ByteWriter writer(encoded.bytes);
-  writer.u8(kVersion);
+  writer.u8(kRawVersion);
   writer.u8(cloud.layout.initial_width);
   writer.u8(cloud.layout.initial_height);
   writer.u8(cloud.layout.min_tile);
@@ -91,7 +91,7 @@ EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options
 
 PlaneCloud decodeRaw(const EncodedPlaneCloud& encoded) {
   ByteReader reader(encoded.bytes.data(), encoded.bytes.size());
-  if (reader.u8() != kVersion) {
+  if (reader.u8() != kRawVersion) {
     throw PlaneCloudDecodeError("plane cloud: RAW version " + std::to_string(encoded.bytes[0]) +
                                 " is unknown here: update the receiver");
   }
