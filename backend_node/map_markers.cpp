@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/map_markers.h"
 
-#include <algorithm>
-#include <set>
+#include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -21,6 +21,8 @@ constexpr float kJoinedAlpha = 1.0F;
 /// Keyframes whose relation to the map is unknown show through.
 constexpr float kSeparateAlpha = 0.3F;
 constexpr double kNodeSize = 0.06;  // [m]
+/// Patches seen more grazingly (cosine between normal and ray) are streaks along depth jumps.
+constexpr double kMinIncidence = 0.12;
 
 std_msgs::ColorRGBA makeColor(const RobotColor& color, float alpha) {
   std_msgs::ColorRGBA message;
@@ -103,6 +105,39 @@ std::vector<visualization_msgs::Marker> makeEdgeMarkers(const MapSnapshot& snaps
   return markers;
 }
 
+/// The two triangles of a tile in the camera's frame.
+struct Patch {
+  const geometry_msgs::Point* points;  ///< six
+  Eigen::Vector3d centre;
+  Eigen::Vector3d normal;  ///< towards the camera
+};
+
+Patch patchAt(const geometry_msgs::Point* points) {
+  const auto corner = [&](int i) { return Eigen::Vector3d(points[i].x, points[i].y, points[i].z); };
+  Patch patch{points, 0.5 * (corner(0) + corner(2)), Eigen::Vector3d::UnitZ()};
+  patch.normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+  if (patch.normal.dot(patch.centre) > 0.0) patch.normal = -patch.normal;
+  return patch;
+}
+
+/// Walls in the robot's colour, lit from one side; floors pale, so that what stands on them shows.
+std_msgs::ColorRGBA shade(const std_msgs::ColorRGBA& color, const Eigen::Vector3d& normal_in_map) {
+  const Eigen::Vector3d light(0.48, 0.64, 0.6);
+  const auto brightness = static_cast<float>(0.72 + 0.28 * normal_in_map.dot(light));
+  const auto paleness = static_cast<float>(0.7 * std::pow(std::abs(normal_in_map.z()), 4));
+  std_msgs::ColorRGBA shaded = color;
+  for (float* channel : {&shaded.r, &shaded.g, &shaded.b}) {
+    *channel = brightness * ((1.0F - paleness) * *channel + paleness);
+  }
+  return shaded;
+}
+
+bool isShown(const MapSnapshot::Node& node, const Patch& patch, const PlaneMapView& view) {
+  const double height = node.T_map_camera.linear().row(2) * patch.centre;
+  const double incidence = -patch.normal.dot(patch.centre.normalized());
+  return height <= view.max_height && incidence >= kMinIncidence;
+}
+
 }  // namespace
 
 bool PlaneMapMarkers::isUpToDate(const MapSnapshot::Node& node) const {
@@ -115,19 +150,20 @@ bool PlaneMapMarkers::isUpToDate(const MapSnapshot::Node& node) const {
 
 visualization_msgs::Marker PlaneMapMarkers::makeMarker(const MapSnapshot::Node& node,
                                                        const RobotColor& color) const {
-  std::vector<geometry_msgs::Point> corners =
+  const std_msgs::ColorRGBA robot_color =
+      makeColor(color, node.component == 0 ? kJoinedAlpha : kSeparateAlpha);
+  const std::vector<geometry_msgs::Point> corners =
       tileTriangles(*node.keyframe->planes, view_.max_depth);
-  const Eigen::RowVector3d up = node.T_map_camera.linear().row(2);
-  std::vector<geometry_msgs::Point> triangles;
+  visualization_msgs::Marker marker = makeTriangleMarker({}, robot_color);
   for (std::size_t i = 0; i + 6 <= corners.size(); i += 6) {
-    const bool is_low = std::all_of(&corners[i], &corners[i] + 6, [&](const auto& corner) {
-      return up * Eigen::Vector3d(corner.x, corner.y, corner.z) <= view_.max_height;
-    });
-    if (is_low) triangles.insert(triangles.end(), &corners[i], &corners[i] + 6);
+    const Patch patch = patchAt(&corners[i]);
+    if (!isShown(node, patch, view_)) continue;
+    marker.points.insert(marker.points.end(), patch.points, patch.points + 6);
+    // One for each triangle: rviz then leaves the lighting to us and shows both sides of a wall.
+    marker.colors.insert(marker.colors.end(), 2,
+                         shade(robot_color, node.T_map_camera.linear() * patch.normal));
   }
-  const float alpha = node.component == 0 ? kJoinedAlpha : kSeparateAlpha;
-  visualization_msgs::Marker marker =
-      makeTriangleMarker(std::move(triangles), makeColor(color, alpha));
+  if (marker.points.empty()) marker.action = visualization_msgs::Marker::DELETE;
   marker.pose = toPoseMessage(node.T_map_camera);
   marker.ns = node.keyframe->id.robot;
   return marker;

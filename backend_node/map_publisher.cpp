@@ -122,7 +122,11 @@ void MapPublisher::broadcastTransforms() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (transforms_.empty()) return;
   // As amcl does: valid until the next one is there, or nobody could look up the present.
-  const ros::Time stamp = ros::Time::now() + ros::Duration(options_.tf_period);
+  ros::Time stamp = ros::Time::now() + ros::Duration(options_.tf_period);
+  // While a bag is paused, time stands still; the same stamp again would be refused.
+  const bool stands_still = stamp <= last_stamp_ && last_stamp_ - stamp < ros::Duration(1.0);
+  if (stands_still) stamp = last_stamp_ + ros::Duration(0, 1000);
+  last_stamp_ = stamp;
   for (geometry_msgs::TransformStamped& transform : transforms_) transform.header.stamp = stamp;
   broadcaster_.sendTransform(transforms_);
 }

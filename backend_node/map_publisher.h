@@ -50,6 +50,7 @@ class MapPublisher {
   std::mutex mutex_;
   Snapshot latest_;
   std::vector<geometry_msgs::TransformStamped> transforms_;
+  ros::Time last_stamp_;  ///< of the transforms
   std::atomic<bool> start_over_{false};
   std::map<std::string, ros::Publisher> path_publishers_;  ///< by robot
   ros::Publisher plane_map_publisher_;

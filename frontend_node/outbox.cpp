@@ -72,13 +72,15 @@ void Outbox::acknowledge(const KeyframeReceipt& receipt, double now) {
     peer.gaps.clear();
   }
   const bool restarted = peer.highest < before.highest || peer.last < before.last;
-  const bool back = now - before.heard > options_.resend_after;
+  // After silence, once, what the link still holds gets time to arrive.
+  const bool back = now - before.heard > options_.resend_after && !peer.was_awaited;
   if (!known || restarted) {
     // What it has arrived in order; having nothing, it began to listen after all was sent.
     peer.lost_before = peer.last < 0 ? next_transmission_ : 0;
     before = Peer();
   }
   if (!known || restarted || back) peer.progress = now;
+  peer.was_awaited = peer.was_awaited || back;
   peer.heard = now;
   noteProgress(before, peer, now);
   dropExcess();
@@ -91,6 +93,7 @@ void Outbox::noteProgress(const Peer& before, Peer& after, double now) {
     entry.acknowledged = true;
     after.progress = now;
     after.stalls = 0;
+    after.was_awaited = false;
     after.lost_before = std::max(after.lost_before, entry.sent);
   }
 }

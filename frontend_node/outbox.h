@@ -96,8 +96,9 @@ class Outbox {
     std::int64_t last = -1;  ///< highest number known to have arrived
     std::vector<std::uint32_t> gaps;
     double heard = 0.0;
-    double progress = 0.0;  ///< when it last acknowledged something new, or began to be heard
-    int stalls = 0;         ///< times it was given everything again since then
+    double progress = 0.0;     ///< when it last acknowledged something new, or began to be heard
+    int stalls = 0;            ///< times it was given everything again since then
+    bool was_awaited = false;  ///< after a silence since then
     /// Transmissions below this number that are not acknowledged are lost.
     std::uint64_t lost_before = 0;
 

@@ -143,6 +143,18 @@ TEST(Outbox, SendsNothingIntoALinkThatIsDown) {
   EXPECT_EQ(numbers(outbox.takeDue(64.5)), Numbers{0});
 }
 
+TEST(Outbox, ResendsThoughReceiptsAreRare) {
+  Outbox outbox = makeOutbox();
+  outbox.acknowledge(receipt(-1), 0.0);
+  outbox.add(makeKeyframe(0), 0.0);
+  std::size_t resends = 0;
+  for (double now = 5.0; now < 60.0; now += 5.0) {
+    outbox.acknowledge(receipt(-1), now);
+    resends += outbox.takeDue(now + 0.1).size();
+  }
+  EXPECT_GE(resends, 2U);
+}
+
 TEST(Outbox, KeepsWhatABackendHeardLatelyLacksAndForgetsHistoryFirst) {
   LinkOptions options;
   options.outbox_bytes = 3.5 * kKeyframeBytes;

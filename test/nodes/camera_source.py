@@ -11,14 +11,16 @@ import rospy
 from harness import HEIGHT, WIDTH, Camera, make_image
 from std_srvs.srv import Trigger
 
+CELL = 16  # [px]
+
 
 def rough_depth():
-    """Steps of 10 cm every 8 pixels: many small planes, keyframes of some kilobytes."""
+    """Steps of 10 cm from cell to cell: many small planes, keyframes of some ten kilobytes."""
     generator = random.Random(1)
     rows = []
-    for _ in range(HEIGHT // 8):
-        cells = [1500 + 100 * generator.randrange(8) for _ in range(WIDTH // 8)]
-        rows.append(struct.pack(f"<{WIDTH}H", *(cells[x // 8] for x in range(WIDTH))) * 8)
+    for _ in range(HEIGHT // CELL):
+        cells = [1500 + 100 * generator.randrange(8) for _ in range(WIDTH // CELL)]
+        rows.append(struct.pack(f"<{WIDTH}H", *(cells[x // CELL] for x in range(WIDTH))) * CELL)
     return b"".join(rows)
 
 

@@ -110,7 +110,7 @@ class Link(unittest.TestCase):
         """Number of keyframes the frontend made."""
         camera.kill()
         camera.wait()
-        return int(frontend.wait_until_steady("keyframes"))
+        return int(frontend.wait_until_steady("keyframes", seconds=8.0))  # the last one when idle
 
     def test_neither_a_cut_nor_a_killed_backend_loses_a_keyframe(self):
         backend = self.start_backend()
