@@ -29,22 +29,22 @@ std::string sizeText(std::size_t width, std::size_t height) {
 void openFile(const std::string& path, rosbag::Bag& bag) {
   try {
     bag.open(path, rosbag::bagmode::Read);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw;
   } catch (const rosbag::BagException& error) {
     throw std::runtime_error("cannot read '" + path + "': " + error.what());
   }
 }
 
+/// A bag that was not closed says so; one that was cut later points to an index that is gone.
 BagSource openSource(const std::string& path, const std::function<void(const std::string&)>& warn) {
   BagSource source{path, nullptr};
   rosbag::Bag bag;
   try {
     openFile(path, bag);
-  } catch (const rosbag::BagUnindexedException&) {
+  } catch (const std::runtime_error&) {
+    if (!RecoveredBag::isBag(path)) throw;
     source.recovered = std::make_shared<RecoveredBag>(path);
     if (warn) {
-      warn("'" + path + "' has no index, it ends in mid-recording: " +
+      warn("'" + path + "' ends in mid-recording and has no index: " +
            std::to_string(source.recovered->messages()) +
            " messages could be read and are used; `rosbag reindex` repairs the file");
     }

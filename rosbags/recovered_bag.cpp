@@ -106,16 +106,26 @@ class ChunkCopier {
     if (chunk.missing > 0) return;  // a compressed chunk is whole or nothing
     const std::uint32_t size = chunk.number(rosbag::SIZE_FIELD_NAME);
     if (size > kLongestRecord) throw rosbag::BagFormatException("a chunk has an absurd size");
-    Bytes plain(size);
-    const auto type = compression == rosbag::COMPRESSION_LZ4 ? rosbag::compression::LZ4
-                                                             : rosbag::compression::BZ2;
-    rosbag::ChunkedFile no_file;
-    rosbag::StreamFactory(&no_file).getStream(type)->decompress(
-        plain.data(), size, const_cast<std::uint8_t*>(chunk.content), chunk.content_size);
+    const Bytes plain = decompress(chunk, compression, size);
     copyRecords(plain.data(), plain.size());
   }
 
  private:
+  static Bytes decompress(const Record& chunk, const std::string& compression, std::uint32_t size) {
+    Bytes plain(size);
+    const auto type = compression == rosbag::COMPRESSION_LZ4 ? rosbag::compression::LZ4
+                                                             : rosbag::compression::BZ2;
+    rosbag::ChunkedFile no_file;
+    const auto stream = rosbag::StreamFactory(&no_file).getStream(type);
+    try {
+      stream->decompress(plain.data(), size, const_cast<std::uint8_t*>(chunk.content),
+                         chunk.content_size);
+    } catch (const rosbag::BagException& error) {
+      throw rosbag::BagFormatException(error.what());
+    }
+    return plain;
+  }
+
   void copyRecords(const std::uint8_t* bytes, std::size_t size) {
     RecordReader reader(bytes, size);
     while (const std::optional<Record> record = reader.next()) {
@@ -156,14 +166,16 @@ class ChunkCopier {
   std::size_t messages_ = 0;
 };
 
+bool startsLikeABag(std::istream& file) {
+  std::string magic;
+  return std::getline(file, magic) && magic == "#ROSBAG V2.0";
+}
+
 /// Reads the file record by record, so that a bag may be larger than the memory.
 class RecordFile {
  public:
   explicit RecordFile(const std::string& path) : file_(path, std::ios::binary) {
-    std::string magic;
-    if (!std::getline(file_, magic) || magic != "#ROSBAG V2.0") {
-      throw std::runtime_error("'" + path + "' is no bag of format 2.0");
-    }
+    if (!startsLikeABag(file_)) throw std::runtime_error("'" + path + "' is no bag of format 2.0");
   }
 
   [[nodiscard]] std::optional<Record> next() {
@@ -201,6 +213,11 @@ std::string newTemporaryFile() {
 
 }  // namespace
 
+bool RecoveredBag::isBag(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return startsLikeABag(file);
+}
+
 RecoveredBag::RecoveredBag(const std::string& path) {
   RecordFile file(path);
   path_ = newTemporaryFile();
@@ -214,6 +231,8 @@ RecoveredBag::RecoveredBag(const std::string& path) {
       }
     } catch (const rosbag::BagFormatException&) {
       // The damage begins here; what was copied so far is what can be read.
+    } catch (const std::out_of_range&) {
+      // Likewise: a record lacks a field.
     }
     messages_ = copier.messages();
     copy.close();

@@ -11,6 +11,8 @@ namespace planecloud_slam {
 /// recorder was killed or that was cut in mid-message. The copy is removed with the object.
 class RecoveredBag {
  public:
+  /// Whether the file exists and starts like a bag of format 2.0.
+  [[nodiscard]] static bool isBag(const std::string& path);
   /// Copies message by message up to the first that is not complete. Throws std::runtime_error when
   /// `path` is no bag of format 2.0 or the copy cannot be written.
   explicit RecoveredBag(const std::string& path);

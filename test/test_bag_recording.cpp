@@ -138,15 +138,18 @@ TEST_F(BagRecordingTest, StampsOfALoopedBagGoBackAndNoPairMixesTheRounds) {
   for (int i = 0; i < 5; ++i) writePair(bag, 100.0 + i, 10 + i, camera_);
   bag.close();
   // The same stamps again, recorded later.
-  rosbag::Bag append(path_, rosbag::bagmode::Append);
+  const std::string looped = (folder_ / "looped.bag").string();
   {
-    rosbag::Bag first(path_, rosbag::bagmode::Read);
-    rosbag::View view(first);
-    for (const rosbag::MessageInstance& message : view) {
-      append.write(message.getTopic(), message.getTime() + ros::Duration(50.0), message);
+    const rosbag::Bag once(path_, rosbag::bagmode::Read);
+    rosbag::Bag twice(looped, rosbag::bagmode::Write);
+    for (const double delay : {0.0, 50.0}) {
+      rosbag::View view(once);
+      for (const rosbag::MessageInstance& message : view) {
+        twice.write(message.getTopic(), message.getTime() + ros::Duration(delay), message);
+      }
     }
   }
-  append.close();
+  path_ = looped;
   const auto recording = std::move(openBag(path_).front());
   std::vector<double> stamps;
   while (const std::optional<RgbdFrame> frame = recording->next()) {
@@ -174,6 +177,18 @@ TEST_F(BagRecordingTest, ABagThatEndsInMidMessageGivesWhatIsWholeAndOneClearMess
   }
   EXPECT_GE(frames, 6);
   EXPECT_LT(frames, 12);
+}
+
+TEST_F(BagRecordingTest, ABagThatWasNeverClosedIsReadToo) {
+  BagWriter bag(path_);
+  const CameraIntrinsics camera = cameraOf(640, 480);
+  for (int i = 0; i < 3; ++i) writePair(bag, 100.0 + i, i, camera);
+  // The chunk being written is lost, the ones before are on the disk.
+  std::vector<std::string> warnings;
+  const auto recordings =
+      openBag(path_, [&](const std::string& text) { warnings.push_back(text); });
+  EXPECT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(recordings.front()->next());
 }
 
 TEST_F(BagRecordingTest, MissingCameraInfoIsNamedWithItsCure) {
@@ -219,7 +234,7 @@ TEST_F(BagRecordingTest, AnUnknownEncodingIsNamed) {
 
 TEST_F(BagRecordingTest, ABagWithoutACameraSaysWhatItHas) {
   BagWriter bag(path_);
-  bag.writeGroundTruth("/ground_truth", StampedPose{});
+  bag.writeGroundTruth("/ground_truth", {1.0, Eigen::Isometry3d::Identity()});
   bag.close();
   EXPECT_NE(failure().find("it has /ground_truth"), std::string::npos) << failure();
 }
