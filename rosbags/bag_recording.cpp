@@ -17,8 +17,8 @@
 namespace planecloud_slam {
 namespace {
 
-constexpr double kPairTolerance = 0.02;  // between the stamps of a pair [s]
-constexpr double kBackwards = 1.0;       // a larger step back is time running backwards [s]
+constexpr double kPairTolerance = 0.02 + 1e-6;  // between the stamps of a pair, rounded [s]
+constexpr double kBackwards = 1.0;              // a larger step back is time running backwards [s]
 
 double stampOf(const sensor_msgs::ImageConstPtr& image) { return image->header.stamp.toSec(); }
 
