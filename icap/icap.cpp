@@ -19,6 +19,9 @@ constexpr double kGateShrink = 0.7;     // of the gates from one iteration to th
 constexpr double kSettledStep = 2e-4;   // norm of a twist that counts as standing still [m, rad]
 constexpr double kRestlessStep = 2e-2;  // a last step beyond has not settled at all [m, rad]
 constexpr double kFineDistance = 0.12;  // gate at which the small pieces take over [m]
+// Of the noise's curvature: what noise alone makes. A direction above is followed, since that is
+// nearer to the truth than the guess more often than not; information takes `observability`.
+constexpr double kFollowed = 1.0;
 // Errors of neighbouring pieces are alike (one tile, one disparity step, one lens), so that many
 // residuals say what one would; found by normalised errors on rendered and real pairs.
 constexpr double kCorrelatedResiduals = 20.0;
@@ -60,7 +63,9 @@ void iterate(const PatchMatcher& matcher, const Schedule& schedule, const IcapOp
   progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
                                          schedule.kernel_width, options);
   progress.observability = analyseObservability(progress.system, options.observability);
-  const Vector6d step = solveObserved(progress.system, progress.observability);
+  const Vector6d step = solveObserved(
+      progress.system,
+      analyseObservability(progress.system, std::min(kFollowed, options.observability)));
   progress.T_target_source = progress.T_target_source * expSe3(step);
   progress.last_step = step.norm();
   ++progress.iterations;

@@ -67,16 +67,16 @@ struct IcapOptions {
   IcapForm form = IcapForm::kRobust;
   int max_iterations = 30;        ///< all stages together, [1, 200]
   int min_matches = 12;           ///< fewer: too_few_planes, [3, 10000]
-  int max_patches = 600;          ///< source pieces used in a stage, [16, 100000]
+  int max_patches = 400;          ///< source pieces used in a stage, [16, 100000]
   double initial_distance = 0.5;  ///< matching gate at the start [m], (0, 5]
   double final_distance = 0.06;   ///< matching gate at the end [m], (0, 5]
   double initial_angle = 0.87;    ///< matching gate of normals at the start [rad], (0, 3.2]
-  double final_angle = 0.21;      ///< matching gate of normals at the end [rad], (0, 3.2]
+  double final_angle = 0.3;       ///< matching gate of normals at the end [rad], (0, 3.2]
   double distance_floor = 0.004;  ///< least standard deviation of a plane distance [m], (0, 1]
   double normal_floor = 0.02;     ///< least standard deviation of a normal [rad], (0, 1]
-  double kernel_width = 3.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
-  /// A direction is observed when its eigenvalue is this many times what the noise of the normals
-  /// alone would make [-], [0, 1000]. Noise alone gives 1.
+  double kernel_width = 4.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
+  /// A direction counts as observed, and gets information, when its eigenvalue is this many times
+  /// what the noise of the normals alone would make [-], [0, 1000]. Noise alone gives 1.
   double observability = 1.5;
   double max_correction = 1.5;  ///< a longer way from the guess is divergence [m], (0, 100]
   double max_rotation = 0.8;    ///< a larger turn from the guess is divergence [rad], (0, 3.2]
