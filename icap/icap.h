@@ -14,7 +14,7 @@ namespace planecloud_slam {
 
 enum class IcapStatus {
   kConverged,     ///< settled, all six directions observed
-  kDegenerate,    ///< settled, but along `unobserved` it still is the guess: usable for the rest
+  kDegenerate,    ///< settled, but no better than the guess along `unobserved`: use the rest
   kTooFewPlanes,  ///< not enough matches for a transform; the result is the guess
   kDiverged,      ///< left the neighbourhood of the guess or never settled: do not use
 };
