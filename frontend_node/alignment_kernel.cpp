@@ -13,9 +13,9 @@ constexpr std::size_t kLanes = ReferencePoints::kLanes;
 using Lanes = Eigen::Array<float, kLanes, 1>;
 using LanesMap = Eigen::Map<const Lanes>;
 
-constexpr float kAgreeing = 0.05F;      ///< relative inverse depth
-constexpr float kNotOccluded = 0.2F;    ///< relative inverse depth
-constexpr float kSurfaceSpread = 0.1F;  ///< relative inverse depth within 2x2 pixels
+constexpr float kAgreeing = 0.05F;    ///< relative inverse depth
+constexpr float kNotOccluded = 0.2F;  ///< relative inverse depth
+constexpr float kCellSpread = 0.1F;   ///< relative inverse depth within 2x2 pixels
 constexpr float kMiddleGrey = 128.0F;
 constexpr float kInverseGreySpread = 1.0F / 64.0F;
 /// Partial sums of this many points are kept in float.
@@ -54,7 +54,7 @@ float sampleInverseDepth(const GreyDepth* upper, const GreyDepth* lower, float f
   const float d = lower[1].inverse_depth;
   const float low = std::min(std::min(a, b), std::min(c, d));
   const float high = std::max(std::max(a, b), std::max(c, d));
-  if (low > (1.0F - kSurfaceSpread) * high) return interpolate(a, b, c, d, fx, fy);
+  if (low > (1.0F - kCellSpread) * high) return interpolate(a, b, c, d, fx, fy);
   const GreyDepth* row = fy < 0.5F ? upper : lower;
   return row[fx < 0.5F ? 0 : 1].inverse_depth;
 }

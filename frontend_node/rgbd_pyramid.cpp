@@ -11,13 +11,13 @@ namespace planecloud_slam {
 namespace {
 
 /// Depths of one surface differ by less than this share within 2x2 pixels.
-constexpr float kSurfaceSpread = 0.05F;
+constexpr float kMergeSpread = 0.05F;
 
 /// Inverse depth of four depths [m], 0 for none: mean over the nearest surface among them.
 float mergeDepths(const std::array<float, 4>& z) {
   const float far = std::max(std::max(z[0], z[1]), std::max(z[2], z[3]));
   const float low = std::min(std::min(z[0], z[1]), std::min(z[2], z[3]));
-  if (low > 0.0F && far - low < kSurfaceSpread * low) return 4.0F / (z[0] + z[1] + z[2] + z[3]);
+  if (low > 0.0F && far - low < kMergeSpread * low) return 4.0F / (z[0] + z[1] + z[2] + z[3]);
   if (!(far > 0.0F)) return 0.0F;
   float near = far;
   for (const float depth : z) {
@@ -26,7 +26,7 @@ float mergeDepths(const std::array<float, 4>& z) {
   float sum = 0.0F;
   float count = 0.0F;
   for (const float depth : z) {
-    if (depth <= 0.0F || depth - near >= kSurfaceSpread * near) continue;
+    if (depth <= 0.0F || depth - near >= kMergeSpread * near) continue;
     sum += depth;
     count += 1.0F;
   }
@@ -40,7 +40,7 @@ float mergeInverseDepths(const std::array<float, 4>& q) {
   float sum = 0.0F;
   float count = 0.0F;
   for (const float inverse_depth : q) {
-    if (near - inverse_depth >= 2.0F * kSurfaceSpread * near) continue;
+    if (near - inverse_depth >= 2.0F * kMergeSpread * near) continue;
     sum += inverse_depth;
     count += 1.0F;
   }

@@ -11,7 +11,7 @@ namespace planecloud_slam {
 namespace {
 
 /// Inverse depths of one surface differ by less than this share within the fitted window.
-constexpr float kSurfaceSpread = 0.1F;
+constexpr float kEdgeSpread = 0.1F;
 constexpr int kWindowRadius = 2;
 constexpr int kMinWindowPixels = 10;
 
@@ -25,7 +25,7 @@ struct SurfaceFit {
 /// True when a direct neighbour is clearly nearer: the pixel's depth and grey may belong to either
 /// side, and what it shows will be covered or uncovered by the next motion.
 bool isBehindEdge(const Image<GreyDepth>& pixels, int x, int y) {
-  const float limit = (1.0F + kSurfaceSpread) * pixels(x, y).inverse_depth;
+  const float limit = (1.0F + kEdgeSpread) * pixels(x, y).inverse_depth;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
       if (pixels(x + dx, y + dy).inverse_depth > limit) return true;
@@ -37,7 +37,7 @@ bool isBehindEdge(const Image<GreyDepth>& pixels, int x, int y) {
 /// Regression of inverse depth on the window around (x, y), over the pixels of the same surface.
 std::optional<SurfaceFit> fitSurface(const Image<GreyDepth>& pixels, int x, int y) {
   const float centre = pixels(x, y).inverse_depth;
-  const float tolerance = kSurfaceSpread * centre;
+  const float tolerance = kEdgeSpread * centre;
   float n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sq = 0, sxq = 0, syq = 0;
   for (int dy = -kWindowRadius; dy <= kWindowRadius; ++dy) {
     const GreyDepth* row = pixels.row(y + dy) + x;
