@@ -4,6 +4,8 @@
 
 import os
 import pathlib
+import shlex
+import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -27,3 +29,14 @@ def files(*patterns, folders=COMPONENTS + ("test", "scripts", "launch", "config"
 
 def relative(path):
     return str(path.relative_to(ROOT))
+
+
+def environment(prefix):
+    """The environment of someone who sourced the setup file of a space, and nothing else."""
+    wanted = ("HOME", "USER", "LC_ALL", "ROS_HOSTNAME", "ROS_HOME")
+    clean = {name: os.environ[name] for name in wanted if name in os.environ}
+    clean["PATH"] = "/usr/bin:/bin"
+    command = f"source {shlex.quote(str(prefix / 'setup.bash'))} && env -0"
+    sourced = subprocess.run(["bash", "-c", command], env=clean, capture_output=True, check=True)
+    variables = sourced.stdout.decode().rstrip("\0").split("\0")
+    return dict(variable.split("=", 1) for variable in variables)

@@ -8,7 +8,7 @@ import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from layout import ROOT, files, relative, space
+from layout import ROOT, environment, files, relative, space
 
 MAX_LAUNCH_LINES = 40
 
@@ -65,11 +65,12 @@ class LaunchFiles(unittest.TestCase):
     def test_are_understood_by_roslaunch(self):
         if space("devel") is None:
             self.skipTest("built without ROS")
+        devel = environment(space("devel"))
         for path in files("*.launch", folders=("launch",)):
             with self.subTest(relative(path)):
                 arguments = [f"{name}:=x" for name in required_arguments(path)]
-                check = subprocess.run(["roslaunch", "--nodes", str(path), *arguments], text=True,
-                                       capture_output=True, check=False)
+                check = subprocess.run(["roslaunch", "--nodes", str(path), *arguments], env=devel,
+                                       text=True, capture_output=True, check=False)
                 self.assertEqual(0, check.returncode, check.stderr)
                 self.assertTrue(check.stdout.split(), "starts no node")
 
