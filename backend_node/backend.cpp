@@ -69,10 +69,8 @@ class Backend::Impl {
   }
 
   void optimize() {
-    for (const GraphEdge& closure : map_.graph().optimize().removed) {
-      static_cast<void>(closure);
-      ++rejected_["removed_after_optimisation"];
-    }
+    const std::size_t removed = map_.graph().optimize().removed.size();
+    if (removed > 0) rejected_["found_false_later"] += removed;
     changed();
   }
 
@@ -118,16 +116,17 @@ class Backend::Impl {
   }
 
   [[nodiscard]] ClosureCheck verify(const LoopCandidate& candidate) {
-    std::optional<RelativePosePrior> prior;
+    RelativePoseGuess guess;
     if (candidate.located) {
-      prior.emplace();
-      prior->T_target_source =
+      guess.T_target_source =
           map_.graph().pose(candidate.target).inverse() * map_.graph().pose(candidate.source);
-      prior->covariance =
+      guess.covariance =
           driftCovariance(std::min(candidate.path, 1e3), options_.loop_closure.drift);
+    } else {
+      guess.T_target_source = Eigen::AngleAxisd(candidate.turn, Eigen::Vector3d::UnitY());
     }
     return verifier_.verify(plane_sets_.get(map_.records(), candidate.target),
-                            plane_sets_.get(map_.records(), candidate.source), prior);
+                            plane_sets_.get(map_.records(), candidate.source), guess);
   }
 
   [[nodiscard]] GraphEdge makeClosure(const LoopCandidate& candidate,

@@ -66,27 +66,26 @@ std::string toString(ClosureVerdict verdict) {
   return "unknown";
 }
 
-std::vector<Eigen::Isometry3d> alignmentStarts(const std::optional<RelativePosePrior>& prior) {
-  Eigen::Isometry3d guess = Eigen::Isometry3d::Identity();
+std::vector<Eigen::Isometry3d> alignmentStarts(const RelativePoseGuess& guess) {
   double shift = kAlikeTranslation;
   double turn = kAlikeRotation;
-  if (prior) {
-    guess = prior->T_target_source;
-    // Two standard deviations of one axis, less what the basin covers anyway.
-    const double sigma_t = std::sqrt(prior->covariance.topLeftCorner<3, 3>().trace() / 3.0);
-    const double sigma_r = std::sqrt(prior->covariance.bottomRightCorner<3, 3>().trace() / 3.0);
+  if (guess.covariance) {
+    // Two standard deviations of one axis, as far as one more basin reaches.
+    const double sigma_t = std::sqrt(guess.covariance->topLeftCorner<3, 3>().trace() / 3.0);
+    const double sigma_r = std::sqrt(guess.covariance->bottomRightCorner<3, 3>().trace() / 3.0);
     shift = std::min(2.0 * sigma_t, 2.0 * kBasinTranslation);
     turn = std::min(2.0 * sigma_r, 2.0 * kBasinRotation);
   }
-  std::vector<Eigen::Isometry3d> starts{guess};
+  const Eigen::Isometry3d& centre = guess.T_target_source;
+  std::vector<Eigen::Isometry3d> starts{centre};
   if (shift > kBasinTranslation) {
     for (const double side : {-shift, shift}) {
-      starts.push_back(shifted(guess, side, 0.0, 0.0));
-      starts.push_back(shifted(guess, 0.0, side, 0.0));
+      starts.push_back(shifted(centre, side, 0.0, 0.0));
+      starts.push_back(shifted(centre, 0.0, side, 0.0));
     }
   }
   if (turn > kBasinRotation) {
-    for (const double side : {-turn, turn}) starts.push_back(shifted(guess, 0.0, 0.0, side));
+    for (const double side : {-turn, turn}) starts.push_back(shifted(centre, 0.0, 0.0, side));
   }
   return starts;
 }
@@ -120,21 +119,22 @@ ClosureCheck ClosureVerifier::align(const PlaneSet& target, const PlaneSet& sour
   return check;
 }
 
-bool ClosureVerifier::agrees(const IcapResult& result, const RelativePosePrior& prior) const {
-  const Matrix6d covariance = prior.covariance + measurementCovariance(result.information);
-  const Vector6d error = logSe3(result.T_target_source.inverse() * prior.T_target_source);
+bool ClosureVerifier::agrees(const IcapResult& result, const RelativePoseGuess& guess) const {
+  if (!guess.covariance) return true;
+  const Matrix6d covariance = *guess.covariance + measurementCovariance(result.information);
+  const Vector6d error = logSe3(result.T_target_source.inverse() * guess.T_target_source);
   return squaredMahalanobis(error, covariance) <= options_.max_inconsistency;
 }
 
 ClosureCheck ClosureVerifier::verify(const PlaneSet& target, const PlaneSet& source,
-                                     const std::optional<RelativePosePrior>& prior) const {
-  const Limits limits =
-      prior ? Limits{options_.min_overlap, options_.max_seen_through}
-            : Limits{options_.unlocated_min_overlap, options_.unlocated_max_seen_through};
+                                     const RelativePoseGuess& guess) const {
+  const Limits limits = guess.covariance ? Limits{options_.min_overlap, options_.max_seen_through}
+                                         : Limits{options_.unlocated_min_overlap,
+                                                  options_.unlocated_max_seen_through};
   std::vector<ClosureCheck> checks;
-  for (const Eigen::Isometry3d& start : alignmentStarts(prior)) {
+  for (const Eigen::Isometry3d& start : alignmentStarts(guess)) {
     ClosureCheck check = align(target, source, start, limits);
-    if (check.verdict == ClosureVerdict::kAccepted && prior && !agrees(check.alignment, *prior)) {
+    if (check.verdict == ClosureVerdict::kAccepted && !agrees(check.alignment, guess)) {
       check.verdict = ClosureVerdict::kInconsistent;
     }
     checks.push_back(std::move(check));

@@ -28,10 +28,11 @@ enum class ClosureVerdict {
 /// Snake-case word for statistics.
 [[nodiscard]] std::string toString(ClosureVerdict verdict);
 
-/// What the graph knows of a pair beforehand.
-struct RelativePosePrior {
+/// What is known of a pair beforehand.
+struct RelativePoseGuess {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
-  Matrix6d covariance = Matrix6d::Identity();  ///< at the source, see se3.h [m^2, rad^2]
+  /// At the source, see se3.h [m^2, rad^2]. None: the two only look alike.
+  std::optional<Matrix6d> covariance;
 };
 
 /// An answer to how two keyframes lie to each other, and whether it holds.
@@ -49,10 +50,10 @@ class ClosureVerifier {
   ClosureVerifier(const ClosureVerificationOptions& options, const IcapOptions& icap)
       : options_(options), icap_(icap) {}
 
-  /// Aligns from several starts and returns the best supported answer. With a prior the starts
-  /// spread over its uncertainty; without one, over what similar views allow.
+  /// Aligns from several starts and returns the best supported answer. The starts spread over the
+  /// guess's uncertainty; without one, over what similar views allow.
   [[nodiscard]] ClosureCheck verify(const PlaneSet& target, const PlaneSet& source,
-                                    const std::optional<RelativePosePrior>& prior) const;
+                                    const RelativePoseGuess& guess) const;
 
  private:
   /// Limits of overlap and free space.
@@ -66,7 +67,7 @@ class ClosureVerifier {
                                    const Limits& limits) const;
   [[nodiscard]] ClosureVerdict judge(const ClosureCheck& check, double view,
                                      const Limits& limits) const;
-  [[nodiscard]] bool agrees(const IcapResult& result, const RelativePosePrior& prior) const;
+  [[nodiscard]] bool agrees(const IcapResult& result, const RelativePoseGuess& guess) const;
 
   ClosureVerificationOptions options_;
   IcapOptions icap_;
@@ -74,7 +75,6 @@ class ClosureVerifier {
 
 /// Starts around a guess: the guess first, then shifts along and across the view and turns about
 /// the camera's vertical, no closer to each other than the basin of the alignment.
-[[nodiscard]] std::vector<Eigen::Isometry3d> alignmentStarts(
-    const std::optional<RelativePosePrior>& prior);
+[[nodiscard]] std::vector<Eigen::Isometry3d> alignmentStarts(const RelativePoseGuess& guess);
 
 }  // namespace planecloud_slam

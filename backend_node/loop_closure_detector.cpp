@@ -77,7 +77,7 @@ std::vector<LoopCandidate> LoopClosureDetector::near(const Query& query) const {
         mutualViewOverlap(*keyframe(query.records, target).planes,
                           *keyframe(query.records, query.source).planes, T_target_source);
     if (overlap < options_.min_view_overlap) continue;
-    scored.emplace_back(1.0 - overlap, LoopCandidate{target, query.source, true, path});
+    scored.emplace_back(1.0 - overlap, LoopCandidate{target, query.source, true, path, 0.0});
   }
   return best(std::move(scored), options_.max_spatial);
 }
@@ -87,10 +87,13 @@ std::vector<LoopCandidate> LoopClosureDetector::alike(const Query& query) const 
   std::vector<Scored> scored;
   for (int target = 0; target < query.graph.size(); ++target) {
     if (query.graph.component(target) == query.graph.component(query.source)) continue;
-    const std::optional<double> dissimilarity = appearanceDissimilarity(
-        keyframe(query.records, target).keyframe->descriptor, source.keyframe->descriptor);
-    if (!dissimilarity || *dissimilarity > options_.max_dissimilarity) continue;
-    scored.emplace_back(*dissimilarity, LoopCandidate{target, query.source, false, 0.0});
+    const auto comparison = compareAppearance(keyframe(query.records, target).keyframe->descriptor,
+                                              source.keyframe->descriptor);
+    if (!comparison || comparison->dissimilarity > options_.max_dissimilarity) continue;
+    const CameraIntrinsics& camera = source.planes->camera;
+    const double turn = std::atan(comparison->shift_x * camera.width / camera.fx);
+    scored.emplace_back(comparison->dissimilarity,
+                        LoopCandidate{target, query.source, false, 0.0, turn});
   }
   return best(std::move(scored), options_.max_appearance);
 }
@@ -107,7 +110,7 @@ void LoopClosureDetector::addHints(const Query& query,
     const bool located = query.graph.component(*target) == query.graph.component(query.source);
     if (located && !isRevisit(query, *target)) continue;
     const double path = located ? query.paths[static_cast<std::size_t>(*target)] : 0.0;
-    candidates.push_back({*target, query.source, located, path});
+    candidates.push_back({*target, query.source, located, path, 0.0});
   }
 }
 

@@ -16,6 +16,7 @@ struct LoopCandidate {
   int source = 0;        ///< node number of the newer keyframe
   bool located = false;  ///< both in one component: their relative pose is known roughly
   double path = 0.0;     ///< of measurements between them when located, see motionLength [m]
+  double turn = 0.0;     ///< otherwise: how far right the source looks, by appearance [rad]
 };
 
 /// Proposes loop closures (ALGORITHMS 6.1): by position inside a component, by appearance and by

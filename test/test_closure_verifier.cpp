@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 
 #include "planecloud_slam/backend_node/closure_verifier.h"
 #include "planecloud_slam/backend_node/drift_model.h"
@@ -17,7 +16,7 @@ constexpr double kNoise = 1.5e-3;  // of a pixel's inverse depth [1/m]
 
 const ClosureVerifier kVerifier{ClosureVerificationOptions(), IcapOptions()};
 
-RelativePosePrior priorAt(const Eigen::Isometry3d& T_target_source, double path) {
+RelativePoseGuess guessAt(const Eigen::Isometry3d& T_target_source, double path) {
   return {T_target_source, driftCovariance(path, DriftOptions())};
 }
 
@@ -29,7 +28,7 @@ TEST(ClosureVerifier, AcceptsATruePairFromAGuessOdometryCouldHaveMade) {
   const Eigen::Isometry3d truth = T_world_target.inverse() * T_world_source;
   Vector6d off;
   off << 0.15, 0.0, -0.1, 0.02, 0.05, 0.0;
-  const ClosureCheck check = kVerifier.verify(target, source, priorAt(truth * expSe3(off), 8.0));
+  const ClosureCheck check = kVerifier.verify(target, source, guessAt(truth * expSe3(off), 8.0));
   EXPECT_EQ(check.verdict, ClosureVerdict::kAccepted) << toString(check.verdict);
   // The sensor's error floor on real pairs is 12-24 mm.
   EXPECT_LT(logSe3(check.alignment.T_target_source.inverse() * truth).norm(), 0.02);
@@ -40,7 +39,7 @@ TEST(ClosureVerifier, RejectsATruePairWhereOdometryCannotHaveGone) {
   const PlaneSet target(makeRoom().view(T_world_camera, kNoise, 1));
   const PlaneSet source(makeRoom().view(T_world_camera, kNoise, 2));
   const Eigen::Isometry3d wrong(Eigen::Translation3d(0.0, 0.0, 0.25));
-  EXPECT_EQ(kVerifier.verify(target, source, priorAt(wrong, 0.0)).verdict,
+  EXPECT_EQ(kVerifier.verify(target, source, guessAt(wrong, 0.0)).verdict,
             ClosureVerdict::kInconsistent);
 }
 
@@ -52,12 +51,12 @@ TEST(ClosureVerifier, RejectsTwoPlacesThatShareOnlyTheirWalls) {
   const Eigen::Isometry3d T_world_camera = lookAlongX({-2.0, 0.0, 0.8}, 0.0, 0.1);
   const PlaneSet target(makeRoom().view(T_world_camera, kNoise, 1));
   const PlaneSet source(other.view(T_world_camera, kNoise, 2));
-  const ClosureVerdict unlocated = kVerifier.verify(target, source, std::nullopt).verdict;
+  const ClosureVerdict unlocated = kVerifier.verify(target, source, RelativePoseGuess()).verdict;
   EXPECT_TRUE(unlocated == ClosureVerdict::kSeenThrough ||
               unlocated == ClosureVerdict::kLittleOverlap)
       << toString(unlocated);
-  const RelativePosePrior prior = priorAt(Eigen::Isometry3d::Identity(), 5.0);
-  EXPECT_NE(kVerifier.verify(target, source, prior).verdict, ClosureVerdict::kAccepted);
+  const RelativePoseGuess guess = guessAt(Eigen::Isometry3d::Identity(), 5.0);
+  EXPECT_NE(kVerifier.verify(target, source, guess).verdict, ClosureVerdict::kAccepted);
 }
 
 TEST(ClosureVerifier, NeverClaimsToKnowThePlaceAlongACorridor) {
@@ -67,7 +66,7 @@ TEST(ClosureVerifier, NeverClaimsToKnowThePlaceAlongACorridor) {
   const PlaneSet target(corridor.view(T_world_target, kNoise, 1));
   const PlaneSet source(corridor.view(T_world_source, kNoise, 2));
   const Eigen::Isometry3d truth = T_world_target.inverse() * T_world_source;
-  const ClosureCheck check = kVerifier.verify(target, source, priorAt(truth, 5.0));
+  const ClosureCheck check = kVerifier.verify(target, source, guessAt(truth, 5.0));
   Vector6d ahead = Vector6d::Zero();  // the corridor's direction in the source's frame
   ahead.head<3>() = T_world_source.linear().transpose() * Eigen::Vector3d::UnitX();
   // Less than a metre's worth of information.
@@ -75,16 +74,16 @@ TEST(ClosureVerifier, NeverClaimsToKnowThePlaceAlongACorridor) {
 }
 
 TEST(ClosureVerifier, HasNothingToSayOfEmptyKeyframes) {
-  EXPECT_EQ(kVerifier.verify(PlaneSet(), PlaneSet(), std::nullopt).verdict,
+  EXPECT_EQ(kVerifier.verify(PlaneSet(), PlaneSet(), RelativePoseGuess()).verdict,
             ClosureVerdict::kTooFewPlanes);
 }
 
 TEST(AlignmentStarts, SpreadWithTheUncertainty) {
   const Eigen::Isometry3d guess(Eigen::Translation3d(1.0, 0.0, 0.0));
-  EXPECT_EQ(alignmentStarts(priorAt(guess, 0.0)).size(), 1u);
-  EXPECT_EQ(alignmentStarts(priorAt(guess, 20.0)).size(), 7u);
-  EXPECT_EQ(alignmentStarts(std::nullopt).size(), 7u);
-  EXPECT_TRUE(alignmentStarts(priorAt(guess, 20.0)).front().isApprox(guess));
+  EXPECT_EQ(alignmentStarts(guessAt(guess, 0.0)).size(), 1u);
+  EXPECT_EQ(alignmentStarts(guessAt(guess, 20.0)).size(), 7u);
+  EXPECT_EQ(alignmentStarts(RelativePoseGuess()).size(), 7u);
+  EXPECT_TRUE(alignmentStarts(guessAt(guess, 20.0)).front().isApprox(guess));
 }
 
 TEST(MutualViewOverlap, IsOneForTheSameViewAndZeroBackToBack) {
