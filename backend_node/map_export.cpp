@@ -12,13 +12,12 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "planecloud_slam/backend_node/robot_colors.h"
-#include "planecloud_slam/backend_node/tile_corners.h"
+#include "planecloud_slam/plane_fit/reconstruction.h"
 
 namespace planecloud_slam {
 namespace {
@@ -56,15 +55,14 @@ class PlaneMesh {
  public:
   void add(const MapSnapshot::Node& node, const RobotColor& color) {
     const PlaneCloud& planes = *node.keyframe->planes;
-    if (!camera_ || camera_->intrinsics() != planes.camera) camera_.emplace(planes.camera);
     for (const PlanarTile& tile : planes.tiles) {
-      const auto corners = tileCorners(*camera_, tile);
+      const auto corners = tileCorners(tile, planes.camera);
       if (!corners) continue;
       pcl::Vertices quadrilateral;
-      for (const Eigen::Vector3d& corner : *corners) {
+      for (const std::size_t i : {0, 3, 2, 1}) {  // counter-clockwise seen from the camera
         quadrilateral.vertices.push_back(
             static_cast<decltype(quadrilateral.vertices)::value_type>(vertices_.size()));
-        vertices_.push_back(vertexAt(node.T_map_camera * corner, color));
+        vertices_.push_back(vertexAt(node.T_map_camera * (*corners)[i], color));
       }
       mesh_.polygons.push_back(std::move(quadrilateral));
     }
@@ -84,7 +82,6 @@ class PlaneMesh {
     return vertex;
   }
 
-  std::optional<Camera> camera_;  ///< of the keyframe last added
   pcl::PointCloud<pcl::PointXYZRGB> vertices_;
   pcl::PolygonMesh mesh_;
 };

@@ -3,15 +3,11 @@
 #include "planecloud_slam/plane_fit/reconstruction.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
 namespace planecloud_slam {
 namespace {
-
-/// A patch is drawn no farther than this [m] where its plane turns parallel to the rays.
-constexpr double kMaxCornerDepth = 100.0;
 
 void checkCamera(const PlaneCloud& cloud, const Camera& camera) {
   if (cloud.camera == camera.intrinsics()) return;
@@ -55,7 +51,9 @@ std::vector<Eigen::Vector3f> reconstructPoints(const PlaneCloud& cloud, const Ca
   return points;
 }
 
-std::array<Eigen::Vector3d, 4> tileCorners(const PlanarTile& tile, const CameraIntrinsics& camera) {
+std::optional<std::array<Eigen::Vector3d, 4>> tileCorners(const PlanarTile& tile,
+                                                          const CameraIntrinsics& camera,
+                                                          double max_depth) {
   const double left = tile.rect.x - 0.5;
   const double top = tile.rect.y - 0.5;
   const double right = left + tile.rect.width;
@@ -68,7 +66,8 @@ std::array<Eigen::Vector3d, 4> tileCorners(const PlanarTile& tile, const CameraI
                                   (image[i][1] - camera.cy) / camera.fy);
     const Eigen::Vector2d tangents = tangentsAt(camera, image[i][0], image[i][1]).value_or(pinhole);
     const double q = inverse_depth.dot(tangents.homogeneous());
-    corners[i] = tangents.homogeneous() / std::max(q, 1.0 / kMaxCornerDepth);
+    if (!(q * max_depth > 1.0)) return std::nullopt;
+    corners[i] = tangents.homogeneous() / q;
   }
   return corners;
 }

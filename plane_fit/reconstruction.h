@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "planecloud_slam/plane_fit/camera.h"
@@ -22,8 +23,9 @@ namespace planecloud_slam {
 
 /// Corners [m] of the tile's patch in the optical frame, clockwise in the image from the upper
 /// left: at the outer edges of its pixels, so that neighbouring patches meet. Lens distortion is
-/// undone; where it cannot be (the very border), the pinhole's ray is taken.
-[[nodiscard]] std::array<Eigen::Vector3d, 4> tileCorners(const PlanarTile& tile,
-                                                         const CameraIntrinsics& camera);
+/// undone; where it cannot be (the very border), the pinhole's ray is taken. None when a corner's
+/// ray does not hit the plane within a depth of `max_depth` [m].
+[[nodiscard]] std::optional<std::array<Eigen::Vector3d, 4>> tileCorners(
+    const PlanarTile& tile, const CameraIntrinsics& camera, double max_depth = 20.0);
 
 }  // namespace planecloud_slam

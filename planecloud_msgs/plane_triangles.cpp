@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/planecloud_msgs/plane_triangles.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -25,12 +24,9 @@ std::vector<geometry_msgs::Point> tileTriangles(const PlaneCloud& cloud, double 
   std::vector<geometry_msgs::Point> triangles;
   triangles.reserve(6 * cloud.tiles.size());
   for (const PlanarTile& tile : cloud.tiles) {
-    const std::array<Eigen::Vector3d, 4> corners = tileCorners(tile, cloud.camera);
-    const bool is_near = std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
-      return corner.z() > 0.0 && corner.z() <= max_depth;
-    });
-    if (!is_near) continue;
-    for (const std::size_t i : {0, 3, 2, 0, 2, 1}) triangles.push_back(toPoint(corners[i]));
+    const auto corners = tileCorners(tile, cloud.camera, max_depth);
+    if (!corners) continue;
+    for (const std::size_t i : {0, 3, 2, 0, 2, 1}) triangles.push_back(toPoint((*corners)[i]));
   }
   return triangles;
 }

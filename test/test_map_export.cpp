@@ -14,7 +14,7 @@
 
 #include "planecloud_slam/backend_node/map_export.h"
 #include "planecloud_slam/backend_node/robot_colors.h"
-#include "planecloud_slam/backend_node/tile_corners.h"
+#include "planecloud_slam/plane_fit/reconstruction.h"
 #include "synthetic_planes.h"
 #include "temporary_folder.h"
 
@@ -122,22 +122,6 @@ TEST(G2oText, SaysTheSameSquaredErrorInG2osTerms) {
   const double own = xi.dot(map.edges[1].information * xi);
   // Equal up to the second order in a rotation of 0.04 rad.
   EXPECT_NEAR(error.dot(information * error), own, 0.05 * own);
-}
-
-TEST(TileCorners, LieOnThePlaneAndFaceTheCamera) {
-  const PlaneCloud cloud = makeRoom().view(lookAlongX({-2.0, 0.0, 0.8}, 0.0, 0.1), 0.0, 1);
-  const Camera camera(cloud.camera);
-  for (const PlanarTile& tile : cloud.tiles) {
-    const auto corners = tileCorners(camera, tile);
-    if (!corners) continue;
-    const Eigen::Vector4d plane = tile.plane();
-    for (const Eigen::Vector3d& corner : *corners) {
-      EXPECT_NEAR(plane.head<3>().dot(corner) + plane.w(), 0.0, 1e-5);  // float32 tangents
-    }
-    const Eigen::Vector3d normal =
-        ((*corners)[1] - (*corners)[0]).cross((*corners)[2] - (*corners)[1]);
-    EXPECT_GT(normal.dot(plane.head<3>()), 0.0);
-  }
 }
 
 /// A binary little-endian PLY of float32 positions and colour bytes.

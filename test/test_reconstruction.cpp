@@ -76,11 +76,20 @@ TEST(Reconstruction, PatchesOfNeighboursMeet) {
   right.rect.x = 128;
   const auto a = tileCorners(left, camera);
   const auto b = tileCorners(right, camera);
-  EXPECT_LT((a[1] - b[0]).norm(), 1e-9);
-  EXPECT_LT((a[2] - b[3]).norm(), 1e-9);
-  for (const Eigen::Vector3d& corner : a) {
+  ASSERT_TRUE(a && b);
+  EXPECT_LT(((*a)[1] - (*b)[0]).norm(), 1e-9);
+  EXPECT_LT(((*a)[2] - (*b)[3]).norm(), 1e-9);
+  for (const Eigen::Vector3d& corner : *a) {
     EXPECT_NEAR(left.plane().head<3>().dot(corner) + left.plane()(3), 0.0, 1e-6);
   }
+}
+
+TEST(Reconstruction, GivesNoPatchBeyondTheDepthAskedFor) {
+  PlanarTile tile;
+  tile.rect = {64, 64, 64, 64};
+  tile.inverse_depth << 0.0F, 0.0F, 0.2F;
+  EXPECT_TRUE(tileCorners(tile, testCamera(), 5.1));
+  EXPECT_FALSE(tileCorners(tile, testCamera(), 4.9));
 }
 
 TEST(Reconstruction, WantsTheCloudsOwnCamera) {
