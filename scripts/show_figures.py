@@ -113,7 +113,7 @@ def show(diagnostics, accuracy, files):
     print(f"closures     {diagnostics.total('closures within a robot', 'backend'):.0f} within a robot, "
           f"{diagnostics.total('closures between robots', 'backend'):.0f} between robots")
     if accuracy is not None:
-        print(f"ATE          {100 * accuracy['ate_rmse_m']:.1f} cm RMSE against ground truth")
+        print(f"ATE          {100 * accuracy['ate_rmse_m']:.2f} cm RMSE against ground truth")
     for path in files:
         print(f"written      {path}")
 
