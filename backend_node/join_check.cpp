@@ -10,8 +10,8 @@
 namespace planecloud_slam {
 namespace {
 
-constexpr double kLargestDistance = 2.0;  ///< of the cameras of a pair [m]
-constexpr double kLeastOverlap = 0.3;     ///< predicted, of the views of a pair
+constexpr double kLargestPairDistance = 2.0;  ///< of the cameras of a pair [m]
+constexpr double kLeastOverlap = 0.3;         ///< predicted, of the views of a pair
 
 /// Nodes within `path` [m] of an end of one of the closures.
 std::vector<bool> nodesNear(const PoseGraph& graph, const std::vector<GraphEdge>& closures,
@@ -44,7 +44,7 @@ std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
       if (!chosen(target, join.target)) continue;
       const Eigen::Isometry3d T_target_source =
           graph.pose(target).inverse() * join.T_target_source * graph.pose(source);
-      if (T_target_source.translation().norm() > kLargestDistance) continue;
+      if (T_target_source.translation().norm() > kLargestPairDistance) continue;
       const double overlap = mutualViewOverlap(
           *records[static_cast<std::size_t>(target)].keyframe->planes,
           *records[static_cast<std::size_t>(source)].keyframe->planes, T_target_source);

@@ -10,6 +10,9 @@ namespace planecloud_slam {
 inline constexpr float kMinDepth = 0.05F;
 inline constexpr float kMaxDepth = 1e3F;
 
+/// Whether a depth [m] was measured.
+[[nodiscard]] inline bool hasDepth(float depth) { return depth >= kMinDepth && depth <= kMaxDepth; }
+
 /// How a pixel of a depth image is read (REP 118).
 template <typename Pixel>
 struct DepthTraits;
@@ -18,9 +21,7 @@ struct DepthTraits;
 template <>
 struct DepthTraits<float> {
   /// Inverse depth [1/m]; 0 where there is none.
-  [[nodiscard]] static float inverse(float depth) {
-    return depth >= kMinDepth && depth <= kMaxDepth ? 1.0F / depth : 0.0F;
-  }
+  [[nodiscard]] static float inverse(float depth) { return hasDepth(depth) ? 1.0F / depth : 0.0F; }
 };
 
 /// 16UC1: millimetres; 0 means none.

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "planecloud_slam/plane_fit/depth_traits.h"
+
 namespace planecloud_slam {
 namespace {
 
@@ -15,8 +17,6 @@ constexpr float kNearest = 0.4F;      // [m]
 constexpr float kFarthest = 8.0F;     // [m]
 constexpr float kWorstError = 0.05F;  // [m]
 constexpr double kTintShare = 0.35;
-
-bool hasDepth(float z) { return std::isfinite(z) && z > 0.0F; }
 
 std::uint8_t toLevel(float share) {
   return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(share, 0.0F, 1.0F)));

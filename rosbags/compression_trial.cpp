@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "planecloud_slam/plane_fit/depth_traits.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 #include "planecloud_slam/rosbags/stopwatch.h"
 
@@ -21,8 +22,6 @@ struct Mean {
   }
   [[nodiscard]] double value() const { return count > 0 ? sum / static_cast<double>(count) : 0.0; }
 };
-
-bool hasDepth(float z) { return std::isfinite(z) && z > 0.0F; }
 
 void measureFit(const Image<float>& depth, const Camera& camera, CompressedFrame& result) {
   Mean distance, difference;
