@@ -9,7 +9,7 @@
 namespace planecloud_slam {
 namespace {
 
-constexpr double kOversampling = 2.0;
+constexpr double kRasterOversampling = 2.0;
 constexpr float kFacesUp = 0.8F;          // least z of the normal
 constexpr float kSteep = 0.35F;           // largest |z| of the normal of a wall
 constexpr float kFloorTolerance = 0.12F;  // [m]
@@ -82,7 +82,7 @@ void smooth(Layer& layer, double sigma) {
 
 cv::Mat paintPlan(const std::vector<SurfaceSample>& samples,
                   const std::vector<PlanColor>& robot_colors, const PlanLayout& layout) {
-  const double scale = kOversampling * layout.pixels_per_metre;
+  const double scale = kRasterOversampling * layout.pixels_per_metre;
   const Eigen::Vector2d size = scale * (layout.upper - layout.lower);
   const auto columns = static_cast<int>(std::ceil(size.x()));
   const auto rows = static_cast<int>(std::ceil(size.y()));
