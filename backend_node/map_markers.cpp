@@ -20,7 +20,7 @@ constexpr double kVisibleRotation = 0.003;  // [rad]
 constexpr float kJoinedAlpha = 1.0F;
 /// Keyframes whose relation to the map is unknown show through.
 constexpr float kSeparateAlpha = 0.3F;
-constexpr double kNodeSize = 0.06;  // [m]
+constexpr double kNodeSize = 0.09;  // [m]
 /// Patches seen more grazingly (cosine between normal and ray) are streaks along depth jumps.
 constexpr double kMinIncidence = 0.12;
 
@@ -34,7 +34,7 @@ std_msgs::ColorRGBA makeColor(const RobotColor& color, float alpha) {
 }
 
 const std_msgs::ColorRGBA kHistoryColor = makeColor({150, 150, 150}, 0.5F);
-const std_msgs::ColorRGBA kClosureColor = makeColor({255, 140, 0}, 1.0F);
+const std_msgs::ColorRGBA kClosureColor = makeColor({220, 20, 40}, 1.0F);
 const std_msgs::ColorRGBA kInterRobotColor = makeColor({255, 0, 200}, 1.0F);
 
 geometry_msgs::Point positionOf(const Eigen::Isometry3d& T_map_camera) {
@@ -89,9 +89,9 @@ std::vector<visualization_msgs::Marker> makeEdgeMarkers(const MapSnapshot& snaps
   const Nodes nodes = indexNodes(snapshot);
   const std::map<std::string, RobotColor> colors = robotColors(snapshot);
   const int lines = visualization_msgs::Marker::LINE_LIST;
-  std::vector<visualization_msgs::Marker> markers = {makeMarker("odometry", lines, 0.025),
+  std::vector<visualization_msgs::Marker> markers = {makeMarker("odometry", lines, 0.04),
                                                      makeMarker("history", lines, 0.008),
-                                                     makeMarker("closures", lines, 0.02)};
+                                                     makeMarker("closures", lines, 0.03)};
   for (const GraphEdge& edge : snapshot.edges) {
     const auto from = nodes.find(edge.from);
     const auto to = nodes.find(edge.to);
@@ -123,7 +123,7 @@ Patch patchAt(const geometry_msgs::Point* points) {
 /// Walls in the robot's colour, lit from one side; floors pale, so that what stands on them shows.
 std_msgs::ColorRGBA shade(const std_msgs::ColorRGBA& color, const Eigen::Vector3d& normal_in_map) {
   const Eigen::Vector3d light(0.48, 0.64, 0.6);
-  const auto brightness = static_cast<float>(0.72 + 0.28 * normal_in_map.dot(light));
+  const auto brightness = static_cast<float>(0.8 + 0.2 * normal_in_map.dot(light));
   const auto paleness = static_cast<float>(0.7 * std::pow(std::abs(normal_in_map.z()), 4));
   std_msgs::ColorRGBA shaded = color;
   for (float* channel : {&shaded.r, &shaded.g, &shaded.b}) {
