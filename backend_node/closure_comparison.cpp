@@ -28,6 +28,13 @@ ClosureComparison::ClosureComparison(const PoseGraph& graph, const GraphEdge& cl
       paths_from_(graph.pathLengths(from_)),
       paths_to_(graph.pathLengths(to_)) {}
 
+double ClosureComparison::path(const GraphEdge& other) const {
+  GraphEdge turned;  // only its ends count
+  turned.from = other.to;
+  turned.to = other.from;
+  return std::min(longerPath(other), longerPath(turned));
+}
+
 double ClosureComparison::longerPath(const GraphEdge& other) const {
   return std::max(paths_from_[static_cast<std::size_t>(graph_.find(other.from).value())],
                   paths_to_[static_cast<std::size_t>(graph_.find(other.to).value())]);

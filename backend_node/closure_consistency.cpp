@@ -12,6 +12,9 @@
 namespace planecloud_slam {
 namespace {
 
+/// Of the closures in the graph the nearest ones are asked: far ones contradict nothing small.
+constexpr std::size_t kMostWitnesses = 5;
+
 /// The two components a closure connects, the older first.
 std::pair<int, int> componentsOf(const PoseGraph& graph, const GraphEdge& closure) {
   return std::minmax({graph.component(graph.find(closure.from).value()),
@@ -44,11 +47,18 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
 
 ClosureConsistency::Testimony ClosureConsistency::hear(const PoseGraph& graph,
                                                        const ClosureComparison& comparison) const {
-  Testimony testimony;
+  std::vector<std::pair<double, const GraphEdge*>> witnesses;
   for (const GraphEdge& edge : graph.edges()) {
     if (edge.kind != EdgeKind::kClosure) continue;
-    const ClosureComparison::Result result = comparison.compare(edge);
-    if (result.path > options_.max_path) continue;
+    const double path = comparison.path(edge);
+    if (path <= options_.max_path) witnesses.emplace_back(path, &edge);
+  }
+  std::stable_sort(witnesses.begin(), witnesses.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  witnesses.resize(std::min(witnesses.size(), kMostWitnesses));
+  Testimony testimony;
+  for (const auto& [path, edge] : witnesses) {
+    const ClosureComparison::Result result = comparison.compare(*edge);
     if (result.distance > options_.max_distance) {
       ++testimony.contradicting;
     } else if (result.independent) {
