@@ -68,7 +68,7 @@ install_packages() {
     --no-install-recommends $missing
 }
 
-# The workspace that already has the checkout in its src folder, else .workspace in the checkout.
+# The workspace that already has the checkout in its src folder, else build/workspace in the checkout.
 find_workspace() {
   local folder="$checkout"
   while [ "$folder" != / ]; do
@@ -78,15 +78,15 @@ find_workspace() {
       return
     fi
   done
-  echo "$checkout/.workspace"
+  echo "$checkout/build/workspace"
 }
 
 make_workspace() {
   workspace="$(find_workspace)"
   mkdir -p "$workspace/src"
-  if [ "$workspace" = "$checkout/.workspace" ]; then
+  if [ "$workspace" = "$checkout/build/workspace" ]; then
     touch "$workspace/CATKIN_IGNORE" "$workspace/.catkin_workspace"
-    ln -sfn ../.. "$workspace/src/planecloud_slam"
+    ln -sfn ../../.. "$workspace/src/planecloud_slam"
   fi
   # Logs stay out of the home folder, which may be missing.
   export ROS_HOME="${ROS_HOME:-$workspace/.ros}"
