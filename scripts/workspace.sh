@@ -13,6 +13,10 @@ export LC_ALL=C.UTF-8
 export USER="${USER:-$(id -un)}"
 export ROS_HOSTNAME="${ROS_HOSTNAME:-localhost}"
 export ROS_MASTER_URI="${ROS_MASTER_URI:-http://localhost:11311}"
+# Recordings beside the checkout; tests on real data are skipped without them.
+if [ -d "$checkout/../shared/data" ]; then
+  export PLANECLOUD_SLAM_DATA="${PLANECLOUD_SLAM_DATA:-$checkout/../shared/data}"
+fi
 jobs="${JOBS:-$(nproc)}"
 # Several files in one go: most of the time of a compiler goes into headers.
 unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8)
@@ -81,12 +85,22 @@ find_workspace() {
   echo "$checkout/build/workspace"
 }
 
+# Links the checkout's entries, not the checkout: the workspace lies in it, and rosrun and roslaunch
+# would follow the loop.
+link_package() {
+  local entry
+  mkdir -p "$1"
+  find "$1" -maxdepth 1 -type l -delete
+  for entry in "$checkout"/*; do
+    case "${entry##*/}" in build* | output) ;; *) ln -s "$entry" "$1" ;; esac
+  done
+}
+
 make_workspace() {
   workspace="$(find_workspace)"
-  mkdir -p "$workspace/src"
   if [ "$workspace" = "$checkout/build/workspace" ]; then
+    link_package "$workspace/src/planecloud_slam"
     touch "$workspace/CATKIN_IGNORE" "$workspace/.catkin_workspace"
-    ln -sfn ../../.. "$workspace/src/planecloud_slam"
   fi
   # Logs stay out of the home folder, which may be missing.
   export ROS_HOME="${ROS_HOME:-$workspace/.ros}"
