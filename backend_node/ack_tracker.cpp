@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 bool AckTracker::noteArrival(const KeyframeId& id) {
   Session& session = sessions_[{id.robot, id.session}];
@@ -72,4 +72,4 @@ std::size_t AckTracker::missing() const {
   return count;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

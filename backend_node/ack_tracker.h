@@ -12,7 +12,7 @@
 
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What there is of one session of one robot, as it is acknowledged.
 struct SessionReceipt {
@@ -55,4 +55,4 @@ class AckTracker {
   std::map<Key, Session> sessions_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

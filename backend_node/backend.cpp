@@ -17,7 +17,7 @@
 #include "planecloud_slam/backend_node/plane_set_cache.h"
 #include "planecloud_slam/backend_node/session_ledger.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Keyframes kept prepared for alignment.
@@ -182,4 +182,4 @@ void Backend::reset() { impl_->reset(); }
 std::shared_ptr<const MapSnapshot> Backend::snapshot() const { return impl_->snapshot(); }
 BackendStatistics Backend::statistics() const { return impl_->statistics(); }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 enum class InsertionStatus {
   kInserted,
@@ -66,4 +66,4 @@ class Backend {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

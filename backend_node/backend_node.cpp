@@ -8,7 +8,7 @@
 #include "planecloud_slam/backend_node/map_export.h"
 #include "planecloud_slam/planecloud_msgs/diagnostics.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 BackendNode::BackendNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                          const BackendNodeOptions& options)
@@ -119,7 +119,8 @@ bool BackendNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Respon
   return true;
 }
 
-bool BackendNode::onExport(ExportMap::Request& request, ExportMap::Response& response) {
+bool BackendNode::onExport(planecloud_slam::ExportMap::Request& request,
+                           planecloud_slam::ExportMap::Response& response) {
   std::shared_ptr<const MapSnapshot> snapshot;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -161,4 +162,4 @@ void BackendNode::publishDiagnostics() {
   diagnostics_.publish(status.toMessage());
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -22,7 +22,7 @@
 #include "planecloud_slam/plane_fit/bounded_queue.h"
 #include "planecloud_slam/planecloud_msgs/log_throttle.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The backend as a ROS node: keyframes in, the map out. One thread owns the map and takes
 /// keyframes in the order of their arrival; it waits for nobody.
@@ -51,7 +51,8 @@ class BackendNode {
 
   bool onOptimize(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool onExport(ExportMap::Request& request, ExportMap::Response& response);
+  bool onExport(planecloud_slam::ExportMap::Request& request,
+                planecloud_slam::ExportMap::Response& response);
   void publishDiagnostics();
 
   LogThrottle log_;
@@ -74,4 +75,4 @@ class BackendNode {
   std::thread working_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

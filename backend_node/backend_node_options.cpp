@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 void BackendNodeOptions::check() const {
   if (map_frame.empty()) throw std::invalid_argument("map_frame = : must be the name of a frame");
@@ -37,4 +37,4 @@ std::string frameOfRobot(const std::string& pattern, const std::string& robot) {
   return frame;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/backend_node/backend_options.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Everything the backend node can be told, by the names of its private parameters.
 struct BackendNodeOptions {
@@ -49,4 +49,4 @@ struct BackendNodeOptions {
 /// `pattern` with every `{robot}` replaced by `robot`.
 [[nodiscard]] std::string frameOfRobot(const std::string& pattern, const std::string& robot);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::string toString(RobustKernel kernel) {
   switch (kernel) {
@@ -97,4 +97,4 @@ void BackendOptions::check() const {
   map.check();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/icap/icap_options.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Robust kernel on the squared error of closures and history edges.
 enum class RobustKernel {
@@ -84,4 +84,4 @@ struct BackendOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

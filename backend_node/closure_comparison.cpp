@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/backend_node/drift_model.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 GraphEdge reversed(const GraphEdge& closure) {
   GraphEdge result = closure;
@@ -70,4 +70,4 @@ ClosureComparison::Result ClosureComparison::compare(const GraphEdge& other) con
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// `closure` seen from its other end: `from` and `to` exchanged.
 [[nodiscard]] GraphEdge reversed(const GraphEdge& closure);
@@ -44,4 +44,4 @@ class ClosureComparison {
   std::vector<double> paths_to_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

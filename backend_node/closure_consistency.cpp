@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/backend_node/consistent_group.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Of the closures in the graph the nearest ones are asked: far ones contradict nothing small.
@@ -170,4 +170,4 @@ std::vector<GraphEdge> ClosureConsistency::take(const std::vector<std::size_t>& 
   return taken;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

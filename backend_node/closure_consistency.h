@@ -14,7 +14,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What becomes of an offered closure.
 struct ClosureAdmission {
@@ -73,4 +73,4 @@ class ClosureConsistency {
   std::size_t next_serial_ = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/backend_node/drift_model.h"
 #include "planecloud_slam/icap/visibility.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// From this far off the alignment finds home (ALGORITHMS 5.6).
@@ -158,4 +158,4 @@ ClosureCheck ClosureVerifier::verify(const PlaneSet& target, const PlaneSet& sou
   return best;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

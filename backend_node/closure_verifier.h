@@ -10,7 +10,7 @@
 #include "planecloud_slam/backend_node/loop_closure_options.h"
 #include "planecloud_slam/icap/icap.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Why an aligned pair is no closure; `kAccepted` when it is one.
 enum class ClosureVerdict {
@@ -77,4 +77,4 @@ class ClosureVerifier {
 /// the camera's vertical, no closer to each other than the basin of the alignment.
 [[nodiscard]] std::vector<Eigen::Isometry3d> alignmentStarts(const RelativePoseGuess& guess);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

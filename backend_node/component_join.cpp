@@ -10,7 +10,7 @@
 #include "planecloud_slam/backend_node/drift_model.h"
 #include "planecloud_slam/backend_node/relative_pose_cost.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kIterations = 10;
@@ -106,4 +106,4 @@ std::optional<ComponentJoin> solveComponentJoin(const PoseGraph& graph,
   return join;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

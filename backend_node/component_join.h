@@ -10,7 +10,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How a group of closures puts one component onto another.
 struct ComponentJoin {
@@ -27,4 +27,4 @@ struct ComponentJoin {
     const PoseGraph& graph, const std::vector<GraphEdge>& closures,
     const ClosureConsistencyOptions& options, const DriftOptions& drift);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

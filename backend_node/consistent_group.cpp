@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::vector<std::size_t> largestConsistentGroup(const ConsistencyMatrix& agrees) {
   const std::size_t size = agrees.size();
@@ -31,4 +31,4 @@ std::vector<std::size_t> largestConsistentGroup(const ConsistencyMatrix& agrees)
   return best;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

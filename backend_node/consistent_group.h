@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Symmetric: `agrees[i][j]` says whether members i and j are consistent.
 using ConsistencyMatrix = std::vector<std::vector<bool>>;
@@ -14,4 +14,4 @@ using ConsistencyMatrix = std::vector<std::vector<bool>>;
 /// finds it (the exact clique problem is exponential). Ascending; the first one found wins ties.
 [[nodiscard]] std::vector<std::size_t> largestConsistentGroup(const ConsistencyMatrix& agrees);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

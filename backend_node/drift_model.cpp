@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 double motionLength(const Eigen::Isometry3d& T) {
   return T.translation().norm() + kMetresPerRadian * rotationAngle(T);
@@ -29,4 +29,4 @@ double squaredMahalanobis(const Vector6d& error, const Matrix6d& covariance) {
   return error.dot(covariance.ldlt().solve(error));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/backend_node/loop_closure_options.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Turning leads tracking astray as well: this far [m] counts as much as one radian.
 constexpr double kMetresPerRadian = 0.5;
@@ -29,4 +29,4 @@ constexpr double kUnknownVariance = 1e4;
 /// Squared Mahalanobis distance of `error` (6).
 [[nodiscard]] double squaredMahalanobis(const Vector6d& error, const Matrix6d& covariance);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

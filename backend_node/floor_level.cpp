@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kLeastArea = 0.5;        ///< of a floor [m^2]
@@ -83,4 +83,4 @@ Eigen::Isometry3d rotationBetween(const Eigen::Vector3d& from, const Eigen::Vect
   return T;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The unit normal [-] of the floor in the camera's frame, pointing up: the area-weighted mean of
 /// the tiles below the camera that face `up_camera` (unit) within `max_tilt` [rad]. None when they
@@ -20,4 +20,4 @@ namespace planecloud_slam {
 [[nodiscard]] Eigen::Isometry3d rotationBetween(const Eigen::Vector3d& from,
                                                 const Eigen::Vector3d& to);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/backend_node/view_overlap.h"
 #include "planecloud_slam/icap/visibility.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kLargestPairDistance = 2.0;  ///< of the cameras of a pair [m]
@@ -82,4 +82,4 @@ bool JoinCheck::holds(const PoseGraph& graph, const KeyframeRecords& records,
   return sum <= options_.join_seen_through * static_cast<double>(pairs.size());
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

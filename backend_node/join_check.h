@@ -11,7 +11,7 @@
 #include "planecloud_slam/backend_node/pose_graph.h"
 #include "planecloud_slam/icap/icap.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Looks at what a join would imply beyond the pairs that propose it: keyframes of both components
 /// that would come to see the same place must not see through each other's surfaces. Two places
@@ -46,4 +46,4 @@ class JoinCheck {
   IcapOptions icap_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Poses and information travel as float32.
@@ -93,4 +93,4 @@ KeyframeCheck checkKeyframe(const Keyframe& keyframe) {
   return check;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What a strict look at a received keyframe gives: its planes, or one reason to refuse it.
 struct KeyframeCheck {
@@ -21,4 +21,4 @@ struct KeyframeCheck {
 /// their information and the coded planes, which it decodes. Never throws for bad data.
 [[nodiscard]] KeyframeCheck checkKeyframe(const Keyframe& keyframe);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/backend_node/drift_model.h"
 #include "planecloud_slam/backend_node/floor_level.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::vector<GraphEdge> graphEdges(const Keyframe& keyframe) {
@@ -140,4 +140,4 @@ std::shared_ptr<const MapSnapshot> KeyframeMap::snapshot(std::uint64_t revision)
   return snapshot;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -14,7 +14,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The keyframes and their pose graph. Knows where a new keyframe goes, which of its edges have to
 /// wait for keyframes still under way, and how the frame of a component is levelled.
@@ -51,4 +51,4 @@ class KeyframeMap {
   std::set<KeyframeId> levelled_;  ///< oldest keyframes of components that have found their floor
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

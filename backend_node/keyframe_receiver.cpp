@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/keyframe_receiver.h"
 
+#include <planecloud_slam/KeyframeAck.h>
+
 #include <utility>
 
 #include "planecloud_slam/planecloud_msgs/conversions.h"
 #include "planecloud_slam/planecloud_msgs/robot_name.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Without limit: the backend drops nothing.
@@ -16,8 +18,8 @@ constexpr std::uint32_t kAckQueue = 10;
 /// Least time between two acknowledgements [s].
 constexpr double kAckInterval = 0.1;
 
-KeyframeAckMessage toMessage(const SessionReceipt& receipt) {
-  KeyframeAckMessage message;
+planecloud_slam::KeyframeAck toMessage(const SessionReceipt& receipt) {
+  planecloud_slam::KeyframeAck message;
   message.robot = receipt.robot;
   message.session = receipt.session;
   message.highest_without_gap = receipt.highest_without_gap;
@@ -46,16 +48,19 @@ void KeyframeReceiver::listen(ros::NodeHandle node, const std::string& name_spac
   auto source = std::make_unique<Source>();
   const std::size_t index = sources_.size();
   source->name_space = name_space;
-  source->acks = node.advertise<KeyframeAckMessage>(prefix + "keyframe_acks", kAckQueue);
-  source->keyframes = node.subscribe<KeyframeMessage>(
+  source->acks = node.advertise<planecloud_slam::KeyframeAck>(prefix + "keyframe_acks", kAckQueue);
+  source->keyframes = node.subscribe<planecloud_slam::PlaneCloudKeyframe>(
       prefix + "keyframes", kSubscriberQueue,
-      [this, index](const KeyframeMessage::ConstPtr& message) { onMessage(*message, index); },
+      [this, index](const planecloud_slam::PlaneCloudKeyframe::ConstPtr& message) {
+        onMessage(*message, index);
+      },
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   ROS_INFO_STREAM("listening to " << source->keyframes.getTopic());
   sources_.push_back(std::move(source));
 }
 
-void KeyframeReceiver::onMessage(const KeyframeMessage& message, std::size_t source) {
+void KeyframeReceiver::onMessage(const planecloud_slam::PlaneCloudKeyframe& message,
+                                 std::size_t source) {
   Keyframe keyframe;
   try {
     keyframe = fromMessage(message);
@@ -86,8 +91,8 @@ void KeyframeReceiver::reportGap(const KeyframeId& id, std::int64_t expected) {
             id.robot);
 }
 
-void KeyframeReceiver::refuse(const KeyframeMessage& message, std::size_t source,
-                              const std::string& reason) {
+void KeyframeReceiver::refuse(const planecloud_slam::PlaneCloudKeyframe& message,
+                              std::size_t source, const std::string& reason) {
   ++malformed_;
   const bool has_name = isRobotName(message.robot);
   log_.error(reason, has_name ? message.robot : "");
@@ -123,10 +128,10 @@ void KeyframeReceiver::acknowledge(Source& source) const {
   // An empty one says that somebody listens, so that late backends get what was sent before.
   if (receipts.empty()) receipts.emplace_back();
   for (const SessionReceipt& receipt : receipts) {
-    KeyframeAckMessage message = toMessage(receipt);
+    planecloud_slam::KeyframeAck message = toMessage(receipt);
     message.backend_id = backend_id_;
     source.acks.publish(message);
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <planecloud_slam/PlaneCloudKeyframe.h>
 #include <ros/ros.h>
 
 #include <atomic>
@@ -15,9 +16,8 @@
 #include "planecloud_slam/backend_node/ack_tracker.h"
 #include "planecloud_slam/backend_node/backend_node_options.h"
 #include "planecloud_slam/planecloud_msgs/log_throttle.h"
-#include "planecloud_slam/planecloud_msgs/messages.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Hears the `keyframes` of all robots, refuses malformed ones and acknowledges on `keyframe_acks`
 /// what is settled.
@@ -48,9 +48,10 @@ class KeyframeReceiver {
   };
 
   void listen(ros::NodeHandle node, const std::string& name_space);
-  void onMessage(const KeyframeMessage& message, std::size_t source);
+  void onMessage(const planecloud_slam::PlaneCloudKeyframe& message, std::size_t source);
   void reportGap(const KeyframeId& id, std::int64_t expected);
-  void refuse(const KeyframeMessage& message, std::size_t source, const std::string& reason);
+  void refuse(const planecloud_slam::PlaneCloudKeyframe& message, std::size_t source,
+              const std::string& reason);
   void acknowledgeAll();
   void acknowledge(Source& source) const;
 
@@ -65,4 +66,4 @@ class KeyframeReceiver {
   ros::WallTimer timer_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

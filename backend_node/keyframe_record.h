@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A keyframe of the map and how far its session had come.
 struct KeyframeRecord {
@@ -18,4 +18,4 @@ struct KeyframeRecord {
 /// All keyframes, numbered as the nodes of the pose graph.
 using KeyframeRecords = std::vector<KeyframeRecord>;
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/backend_node/view_overlap.h"
 #include "planecloud_slam/plane_fit/appearance_descriptor.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A candidate with what it is judged by: the smaller, the better.
@@ -114,4 +114,4 @@ void LoopClosureDetector::addHints(const Query& query,
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

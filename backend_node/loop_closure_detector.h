@@ -8,7 +8,7 @@
 #include "planecloud_slam/backend_node/loop_closure_options.h"
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A pair of keyframes that may show the same place.
 struct LoopCandidate {
@@ -47,4 +47,4 @@ class LoopClosureDetector {
   DriftOptions drift_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Which pairs of keyframes are tried as loop closures.
 struct LoopCandidateOptions {
@@ -132,4 +132,4 @@ struct LoopClosureOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

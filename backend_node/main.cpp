@@ -7,13 +7,13 @@
 #include "planecloud_slam/planecloud_msgs/node_parameters.h"
 
 int main(int argc, char** argv) {
-  using planecloud_slam::BackendNode;
-  using planecloud_slam::BackendNodeOptions;
-  return planecloud_slam::runNode(argc, argv, "backend_node", [] {
+  using planecloud::BackendNode;
+  using planecloud::BackendNodeOptions;
+  return planecloud::runNode(argc, argv, "backend_node", [] {
     const ros::NodeHandle node;
     const ros::NodeHandle private_node("~");
-    const auto options = planecloud_slam::loadNodeOptions<BackendNodeOptions>(private_node);
+    const auto options = planecloud::loadNodeOptions<BackendNodeOptions>(private_node);
     const BackendNode backend(node, private_node, options);
-    planecloud_slam::spinUntilStopped();
+    planecloud::spinUntilStopped();
   });
 }

@@ -9,7 +9,7 @@
 #include "planecloud_slam/backend_node/robot_colors.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZRGB>;
@@ -74,4 +74,4 @@ sensor_msgs::PointCloud2 MapCloudBuilder::build(const MapSnapshot& snapshot,
   return message;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/plane_fit/camera.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Points sampled from the planes of the map, one for each cell of a grid, coloured by robot.
 /// Remembers the points of each keyframe. For one thread.
@@ -37,4 +37,4 @@ class MapCloudBuilder {
   std::unique_ptr<Camera> camera_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -19,7 +19,7 @@
 #include "planecloud_slam/backend_node/robot_colors.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// `%.9g` keeps all digits of the float32 that information travels as.
@@ -161,4 +161,4 @@ std::vector<std::string> exportMap(const std::string& directory, const MapSnapsh
   return paths;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

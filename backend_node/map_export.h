@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// One line of the TUM trajectory format without its end, `stamp tx ty tz qx qy qz qw` [s, m, unit
 /// quaternion with qw >= 0], in fixed digits: microseconds, micrometres.
@@ -35,4 +35,4 @@ void writePlaneMap(const std::string& path, const MapSnapshot& snapshot);
 /// directory. Returns the paths. Throws std::runtime_error naming the file that cannot be written.
 std::vector<std::string> exportMap(const std::string& directory, const MapSnapshot& snapshot);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/planecloud_msgs/plane_triangles.h"
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Smaller moves are not worth sending the planes of a keyframe again.
@@ -217,4 +217,4 @@ std::map<std::string, nav_msgs::Path> makePaths(const MapSnapshot& snapshot,
   return paths;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

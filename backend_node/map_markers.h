@@ -13,7 +13,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/backend_node/robot_colors.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What of the plane map is shown.
 struct PlaneMapView {
@@ -60,4 +60,4 @@ class PlaneMapMarkers {
 [[nodiscard]] std::map<std::string, nav_msgs::Path> makePaths(const MapSnapshot& snapshot,
                                                               const std_msgs::Header& header);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

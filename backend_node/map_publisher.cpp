@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint32_t kQueue = 2;
@@ -131,4 +131,4 @@ void MapPublisher::broadcastTransforms() {
   broadcaster_.sendTransform(transforms_);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -20,7 +20,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/plane_fit/bounded_queue.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Shows the map to others: `plane_map`, `map_cloud`, `pose_graph`, a `path` for each robot and tf
 /// `map -> odom`. Works on snapshots in its own thread, so that nobody waits for it.
@@ -62,4 +62,4 @@ class MapPublisher {
   std::thread publishing_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

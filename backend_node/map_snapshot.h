@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 enum class EdgeKind {
   kOdometry,  ///< to the previous keyframe, from the frontend
@@ -51,4 +51,4 @@ struct MapSnapshot {
   int components = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

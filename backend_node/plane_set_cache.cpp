@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/plane_set_cache.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 PlaneSet PlaneSetCache::get(const KeyframeRecords& records, int node) {
   const auto found = by_node_.find(node);
@@ -25,4 +25,4 @@ void PlaneSetCache::clear() {
   by_node_.clear();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 #include "planecloud_slam/backend_node/keyframe_record.h"
 #include "planecloud_slam/icap/plane_set.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Keyframes prepared for alignment. A prepared one takes some hundred kilobytes, so only those
 /// used last are kept; the others are prepared again when they are wanted.
@@ -33,4 +33,4 @@ class PlaneSetCache {
   std::unordered_map<int, std::list<Entry>::iterator> by_node_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

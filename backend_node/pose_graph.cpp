@@ -13,7 +13,7 @@
 #include "planecloud_slam/backend_node/pose_graph_solver.h"
 #include "planecloud_slam/backend_node/relative_pose_cost.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A direction counts as observed from this information on [1/m^2, 1/rad^2]: 0.1 m, 0.1 rad.
@@ -176,4 +176,4 @@ OptimisationSummary PoseGraph::optimize() {
   return summary;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

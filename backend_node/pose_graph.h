@@ -10,7 +10,7 @@
 #include "planecloud_slam/backend_node/backend_options.h"
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What an optimisation did.
 struct OptimisationSummary {
@@ -83,4 +83,4 @@ class PoseGraph {
   int components_ = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 
 #include "planecloud_slam/backend_node/relative_pose_cost.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A pose as Ceres keeps it: translation x y z, unit quaternion x y z w.
@@ -190,4 +190,4 @@ void solvePoseGraph(const PoseGraphOptions& options, PoseGraphProblem& problem,
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

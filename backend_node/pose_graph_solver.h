@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Poses, which of them are fixed, and measurements between them by position.
 struct PoseGraphProblem {
@@ -27,4 +27,4 @@ struct PoseGraphProblem {
 void solvePoseGraph(const PoseGraphOptions& options, PoseGraphProblem& problem,
                     OptimisationSummary& summary);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

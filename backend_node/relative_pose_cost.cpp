@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Below this angle [rad] series replace the closed forms, which cancel.
@@ -91,4 +91,4 @@ RelativePoseCost::Linearisation RelativePoseCost::linearise(
   return {square_root_information_ * error, -by_to * adjoint(T_from_to.inverse()), by_to};
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

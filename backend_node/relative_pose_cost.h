@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// `S` (6 x 6) with `S^T S = information`, also for a semi-definite matrix: rows of directions
 /// without information are zero. Eigenvalues are used because Cholesky needs a definite matrix (for
@@ -44,4 +44,4 @@ class RelativePoseCost {
   Matrix6d square_root_information_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

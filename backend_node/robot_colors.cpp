@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Okabe and Ito's palette, told apart by colour-blind people as well.
@@ -26,4 +26,4 @@ std::map<std::string, RobotColor> robotColors(const MapSnapshot& snapshot) {
   return colors;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Red, green, blue [0, 255].
 struct RobotColor {
@@ -21,4 +21,4 @@ struct RobotColor {
 /// from its start again when there are more robots than colours.
 [[nodiscard]] std::map<std::string, RobotColor> robotColors(const MapSnapshot& snapshot);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

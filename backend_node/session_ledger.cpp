@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::string SessionLedger::clash(const Keyframe& keyframe) const {
   const KeyframeId& id = keyframe.id;
@@ -31,4 +31,4 @@ void SessionLedger::record(const Keyframe& keyframe) {
   session->second.last_number = std::max(session->second.last_number, keyframe.id.number);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

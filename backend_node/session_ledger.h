@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Tells a restarted frontend from two robots that go by one name. After a restart only the newer
 /// session makes new keyframes; the older one may still deliver what it made before. Two sessions
@@ -32,4 +32,4 @@ class SessionLedger {
   std::map<std::string, std::map<std::uint64_t, Session>> sessions_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

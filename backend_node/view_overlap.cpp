@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kNearestDepth = 0.1;  ///< of a point in the other's view [m]
@@ -41,4 +41,4 @@ double mutualViewOverlap(const PlaneCloud& target, const PlaneCloud& source,
                   viewShare(source, target, T_target_source.inverse()));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Share of `source`'s tiles, by pixels, whose centres fall into `target`'s image and face its
 /// camera, and the other way round: the smaller of both, [0, 1]. Ignores occlusion and lens
@@ -14,4 +14,4 @@ namespace planecloud_slam {
 [[nodiscard]] double mutualViewOverlap(const PlaneCloud& target, const PlaneCloud& source,
                                        const Eigen::Isometry3d& T_target_source);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kLanes = ReferencePoints::kLanes;
@@ -274,4 +274,4 @@ BlockScatter accumulateBlockScatter(const ReferencePoints& points, const Residua
   return scatter;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

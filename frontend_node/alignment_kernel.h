@@ -16,7 +16,7 @@
 ///
 /// with x the projection of the warped point and q inverse depth: Kerl's depth residual (2013b
 /// eq. (4)) divided by z^2, so that sensor noise, which grows as z^2, has one scale everywhere.
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Brightness of the current image as a function of the reference: `I = gain * I_ref + offset`.
 struct Brightness {
@@ -71,4 +71,4 @@ struct BlockScatter {
                                                   const ResidualView& residuals,
                                                   const ResidualScale& scale, double nu);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

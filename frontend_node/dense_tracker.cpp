@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kMinPoints = 60;
@@ -211,4 +211,4 @@ Alignment DenseTracker::align(const TrackingReference& reference, const RgbdPyra
   return alignment;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

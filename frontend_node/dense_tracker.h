@@ -11,7 +11,7 @@
 #include "planecloud_slam/frontend_node/tracking_reference.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Where an alignment may start.
 struct AlignmentStart {
@@ -73,4 +73,4 @@ class DenseTracker {
   Residuals residuals_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

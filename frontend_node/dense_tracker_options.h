@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What may change between two images besides the pose: exposure drifts on real cameras.
 enum class BrightnessModel {
@@ -77,4 +77,4 @@ struct DenseTrackerOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

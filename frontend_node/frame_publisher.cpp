@@ -12,7 +12,7 @@
 #include "planecloud_slam/planecloud_msgs/plane_triangles.h"
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr char kVisualOdomFrame[] = "visual_odom";
@@ -76,7 +76,7 @@ void VisualOdometryPublisher::findMount(const std::string& camera_frame) {
 
 PlanePreviewPublisher::PlanePreviewPublisher(ros::NodeHandle node, const FrontendOptions& options)
     : compressor_(options),
-      planes_(node.advertise<PlaneCloudMessage>("plane_cloud", 2)),
+      planes_(node.advertise<planecloud_slam::PlaneCloud>("plane_cloud", 2)),
       markers_(node.advertise<visualization_msgs::MarkerArray>("plane_markers", 2)) {}
 
 bool PlanePreviewPublisher::isWanted() const {
@@ -90,7 +90,8 @@ void PlanePreviewPublisher::publish(TrackedFrame tracked) {
   live.grey = std::move(tracked.frame.grey);
   live.camera = tracked.camera;
   const Keyframe fitted = compressor_.compress(std::move(live), &FitBudget::Clock::now);
-  const PlaneCloudMessage message = toMessage(fitted.planes, fitted.stamp, tracked.camera_frame);
+  const planecloud_slam::PlaneCloud message =
+      toMessage(fitted.planes, fitted.stamp, tracked.camera_frame);
   planes_.publish(message);
   if (markers_.getNumSubscribers() == 0) return;
 
@@ -102,4 +103,4 @@ void PlanePreviewPublisher::publish(TrackedFrame tracked) {
   markers_.publish(markers);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

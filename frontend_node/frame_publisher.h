@@ -14,7 +14,7 @@
 #include "planecloud_slam/frontend_node/keyframe_compressor.h"
 #include "planecloud_slam/frontend_node/odometry_source.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Publishes what live frames give: `visual_odom`, tf if asked to. For one thread.
 class VisualOdometryPublisher {
@@ -53,4 +53,4 @@ class PlanePreviewPublisher {
   ros::Publisher markers_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/planecloud_msgs/image_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::string sizeText(std::uint32_t width, std::uint32_t height) {
@@ -85,4 +85,4 @@ void FrameTracker::finish() {
   if (frontend_) frontend_->finish();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

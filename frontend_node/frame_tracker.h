@@ -12,7 +12,7 @@
 #include "planecloud_slam/frontend_node/odometry_source.h"
 #include "planecloud_slam/frontend_node/rgbd_input.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A frame, what tracking says of it, and where it came from.
 struct TrackedFrame {
@@ -55,4 +55,4 @@ class FrameTracker {
   bool is_placed_ = false;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/frontend_node/rgbd_pyramid.h"
 #include "planecloud_slam/frontend_node/tracking_reference.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A level camera looking along x of the odometry frame (x forward, y left, z up).
@@ -251,4 +251,4 @@ void Frontend::setNextPose(const Eigen::Isometry3d& T_odom_camera) {
   impl_->setNextPose(T_odom_camera);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -14,7 +14,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// One colour-depth pair in one camera, as it came from the sensor (not rectified).
 struct RgbdFrame {
@@ -89,4 +89,4 @@ class Frontend {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/planecloud_msgs/diagnostics.h"
 #include "planecloud_slam/planecloud_msgs/robot_name.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kTicksPerInputReport = 5;
@@ -225,4 +225,4 @@ void FrontendNode::publishDiagnostics() {
   diagnostics_.publish(status.toMessage());
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

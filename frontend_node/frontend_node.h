@@ -21,7 +21,7 @@
 #include "planecloud_slam/plane_fit/bounded_queue.h"
 #include "planecloud_slam/planecloud_msgs/log_throttle.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The frontend as a ROS node: images in, keyframes out. Three threads in a row, none of which
 /// waits for the next one: tracking, fitting keyframes, fitting live frames for whoever looks.
@@ -95,4 +95,4 @@ class FrontendNode {
   std::thread previewing_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

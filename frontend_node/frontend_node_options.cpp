@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::string toString(RectifyMode mode) {
   switch (mode) {
@@ -64,4 +64,4 @@ std::string robotName(const std::string& name, const std::string& name_space) {
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

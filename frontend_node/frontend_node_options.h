@@ -8,7 +8,7 @@
 #include "planecloud_slam/frontend_node/outbox.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Whether the images are rectified already.
 enum class RectifyMode {
@@ -85,4 +85,4 @@ struct FrontendNodeOptions {
 /// The robot's name: `name`, else the namespace without its first slash, else "robot".
 [[nodiscard]] std::string robotName(const std::string& name, const std::string& name_space);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

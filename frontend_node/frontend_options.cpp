@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::string toString(BrightnessModel model) {
   switch (model) {
@@ -78,4 +78,4 @@ void FrontendOptions::check() const {
   codec.check();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

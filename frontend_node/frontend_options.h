@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Everything a frontend can be told; names as in ROS parameters and YAML files.
 struct FrontendOptions {
@@ -39,4 +39,4 @@ struct FrontendOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Colour and depth of one moment may arrive out of order by less than this [s].
@@ -75,4 +75,4 @@ std::string InputMonitor::describeMismatch() const {
   return text.str();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

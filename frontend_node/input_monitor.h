@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Watches what arrives and says, in words that name the cure, why no frames come of it. Stamps are
 /// those of the messages, `now` is any clock that never goes back, both [s]. No threads, no clock.
@@ -49,4 +49,4 @@ class InputMonitor {
   double since_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 class KeyframeCompressor::Impl {
  public:
@@ -56,4 +56,4 @@ Keyframe KeyframeCompressor::compress(CompletedKeyframe completed,
   return impl_->compress(std::move(completed), std::move(now));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/budget.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The fitting half of the frontend: turns a completed keyframe into what travels (plane cloud
 /// under time and byte budgets, appearance descriptor). One per thread.
@@ -32,4 +32,4 @@ class KeyframeCompressor {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 void KeyframeSelectorOptions::check() const {
   checkRange("keyframe/max_translation", max_translation, 0.01, 10.0);
@@ -47,4 +47,4 @@ bool KeyframeSelector::isLeavingKeyframe(const Eigen::Isometry3d& T_keyframe_cam
          entropy_ratio_ < options_.min_entropy_ratio;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

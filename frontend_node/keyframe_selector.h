@@ -7,7 +7,7 @@
 #include "planecloud_slam/plane_fit/option_fields.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// When a new keyframe opens; each criterion alone suffices.
 struct KeyframeSelectorOptions {
@@ -54,4 +54,4 @@ class KeyframeSelector {
   double entropy_ratio_ = 1.0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/planecloud_msgs/conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kResendPeriod = 0.2;  // [s]
@@ -18,7 +18,7 @@ constexpr std::uint32_t kAckQueue = 100;
 
 double monotonicNow() { return ros::SteadyTime::now().toSec(); }
 
-KeyframeReceipt toReceipt(const KeyframeAckMessage& message) {
+KeyframeReceipt toReceipt(const planecloud_slam::KeyframeAck& message) {
   return {message.backend_id,          message.robot,   message.session,
           message.highest_without_gap, message.highest, message.gaps};
 }
@@ -28,7 +28,8 @@ KeyframeReceipt toReceipt(const KeyframeAckMessage& message) {
 KeyframeSender::KeyframeSender(ros::NodeHandle node, const LinkOptions& options,
                                const std::string& robot, std::uint64_t session)
     : outbox_(options, robot, session),
-      publisher_(node.advertise<KeyframeMessage>("keyframes", kPublisherQueue)) {
+      publisher_(
+          node.advertise<planecloud_slam::PlaneCloudKeyframe>("keyframes", kPublisherQueue)) {
   if (!options.acknowledge) return;
   acks_ = node.subscribe("keyframe_acks", kAckQueue, &KeyframeSender::onAck, this,
                          ros::TransportHints().tcpNoDelay());
@@ -37,14 +38,14 @@ KeyframeSender::KeyframeSender(ros::NodeHandle node, const LinkOptions& options,
 }
 
 void KeyframeSender::send(Keyframe keyframe, const std::string& camera_frame) {
-  const KeyframeMessage message = toMessage(keyframe, camera_frame);
+  const planecloud_slam::PlaneCloudKeyframe message = toMessage(keyframe, camera_frame);
   const std::lock_guard<std::mutex> lock(mutex_);
   camera_frame_ = camera_frame;
   outbox_.add(std::make_shared<const Keyframe>(std::move(keyframe)), monotonicNow());
   publisher_.publish(message);
 }
 
-void KeyframeSender::onAck(const KeyframeAckMessage& message) {
+void KeyframeSender::onAck(const planecloud_slam::KeyframeAck& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   outbox_.acknowledge(toReceipt(message), monotonicNow());
 }
@@ -79,4 +80,4 @@ std::size_t KeyframeSender::flush(double seconds) const {
   return missing;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

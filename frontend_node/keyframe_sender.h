@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <planecloud_slam/KeyframeAck.h>
 #include <ros/ros.h>
 
 #include <cstdint>
@@ -9,9 +10,8 @@
 #include <string>
 
 #include "planecloud_slam/frontend_node/outbox.h"
-#include "planecloud_slam/planecloud_msgs/messages.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Publishes `keyframes`, listens to `keyframe_acks` and sends again what backends miss.
 class KeyframeSender {
@@ -29,7 +29,7 @@ class KeyframeSender {
   std::size_t flush(double seconds) const;
 
  private:
-  void onAck(const KeyframeAckMessage& message);
+  void onAck(const planecloud_slam::KeyframeAck& message);
   void resend();
 
   std::string camera_frame_;
@@ -41,4 +41,4 @@ class KeyframeSender {
   ros::WallTimer timer_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -177,4 +177,4 @@ Image<float> LocalMap::depth() const {
   return depth;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

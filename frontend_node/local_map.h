@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How live frames update the depth of the open keyframe.
 struct LocalMapOptions {
@@ -67,4 +67,4 @@ class LocalMap {
   std::unique_ptr<RowWarp> warp_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

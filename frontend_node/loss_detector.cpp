@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kSampleStep = 4;
@@ -95,4 +95,4 @@ std::string LossDetector::findAlignmentFault(const Alignment& alignment,
   return "";
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

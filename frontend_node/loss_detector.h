@@ -9,7 +9,7 @@
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/frontend_node/loss_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What a track must explain besides its alignment.
 struct TrackedMotion {
@@ -35,4 +35,4 @@ class LossDetector {
   LossOptions options_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What makes a track implausible. Loss is an outcome, not an error.
 struct LossOptions {
@@ -37,4 +37,4 @@ struct LossOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

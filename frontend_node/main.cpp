@@ -7,14 +7,14 @@
 #include "planecloud_slam/planecloud_msgs/node_parameters.h"
 
 int main(int argc, char** argv) {
-  using planecloud_slam::FrontendNode;
-  using planecloud_slam::FrontendNodeOptions;
-  return planecloud_slam::runNode(argc, argv, "frontend_node", [] {
+  using planecloud::FrontendNode;
+  using planecloud::FrontendNodeOptions;
+  return planecloud::runNode(argc, argv, "frontend_node", [] {
     const ros::NodeHandle node;
     const ros::NodeHandle private_node("~");
-    const auto options = planecloud_slam::loadNodeOptions<FrontendNodeOptions>(private_node);
+    const auto options = planecloud::loadNodeOptions<FrontendNodeOptions>(private_node);
     FrontendNode frontend(node, private_node, options);
-    planecloud_slam::spinUntilStopped();
+    planecloud::spinUntilStopped();
     frontend.finish();
   });
 }

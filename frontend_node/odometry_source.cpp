@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 OdometrySource::OdometrySource(const FrontendNodeOptions& options)
     : odom_frame_(options.publish_odom_tf ? "" : options.odom_frame),
@@ -57,4 +57,4 @@ void OdometrySource::clear() {
   T_odom_visual_.reset();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

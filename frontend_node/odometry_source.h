@@ -12,7 +12,7 @@
 
 #include "planecloud_slam/frontend_node/frontend_node_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Poses of the camera in the robot's odometry frame: from tf where something publishes them, else
 /// visual odometry. Safe to use from several threads.
@@ -50,4 +50,4 @@ class OdometrySource {
   std::optional<Eigen::Isometry3d> T_odom_visual_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

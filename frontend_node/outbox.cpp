@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Poses, intrinsics and names around the payload of a keyframe message [B].
@@ -190,4 +190,4 @@ OutboxStatistics Outbox::statistics() const {
   return statistics;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How keyframes are kept and sent again. Keys: `link/...`.
 struct LinkOptions {
@@ -125,4 +125,4 @@ class Outbox {
   std::size_t forgotten_ = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Fixed-point maps of cv::remap: where each rectified pixel comes from.
 struct Rectifier::Maps {
@@ -53,4 +53,4 @@ RgbdFrame Rectifier::rectify(const RgbdFrame& frame) const {
   return rectified;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/plane_fit/camera.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Remaps image pairs of a camera with lens distortion to the same pinhole without it: grey values
 /// bilinear, depths from the nearest pixel (no depth between two surfaces).
@@ -31,4 +31,4 @@ class Rectifier {
   std::unique_ptr<Maps> maps_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

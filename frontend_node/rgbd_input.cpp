@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr char kColorTopic[] = "rgb/image_rect_color";
@@ -148,4 +148,4 @@ void RgbdInput::warnOfMixedRectification(const sensor_msgs::CameraInfo& camera_i
                   << " is rectified and the other is not: subscribe to both rectified or both raw");
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

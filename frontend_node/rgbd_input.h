@@ -21,7 +21,7 @@
 #include "planecloud_slam/frontend_node/rgbd_synchronizer.h"
 #include "planecloud_slam/planecloud_msgs/log_throttle.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A colour-depth pair as it came, with the camera that saw it.
 struct InputFrame {
@@ -85,4 +85,4 @@ class RgbdInput {
   ros::AsyncSpinner spinner_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

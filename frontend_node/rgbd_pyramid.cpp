@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Depths of one surface differ by less than this share within 2x2 pixels.
@@ -134,4 +134,4 @@ void RgbdPyramid::assign(ImageView<std::uint8_t> grey, ImageView<float> depth) {
   for (std::size_t i = 1; i < levels_.size(); ++i) halve(levels_[i - 1], levels_[i]);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

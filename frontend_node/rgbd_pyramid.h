@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Grey value and inverse depth of a pixel side by side: tracking reads both at the same place.
 struct GreyDepth {
@@ -60,4 +60,4 @@ class RgbdPyramid {
   std::vector<RgbdLevel> levels_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include <boost/bind/bind.hpp>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Event = ros::MessageEvent<sensor_msgs::Image const>;
@@ -62,4 +62,4 @@ void RgbdSynchronizer::addDepth(const sensor_msgs::ImageConstPtr& depth) { polic
 
 void RgbdSynchronizer::clear() { policy_ = std::make_unique<Policy>(options_, on_pair_); }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

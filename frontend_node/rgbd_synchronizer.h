@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/frontend_node/frontend_node_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Pairs colour and depth images by their stamps, exactly or approximately. Not for several threads
 /// at once.
@@ -33,4 +33,4 @@ class RgbdSynchronizer {
   std::unique_ptr<Policy> policy_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

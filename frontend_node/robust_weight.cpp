@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/frontend_node/tracking_reference.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Lanes = Eigen::Array<float, ReferencePoints::kLanes, 1>;
@@ -47,4 +47,4 @@ ResidualScale reestimateScale(const ResidualView& residuals, const ResidualScale
   return scale;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The scale matrix of a bivariate t-distribution of (grey, inverse depth) residuals, held as the
 /// whitening `e1 = (r_grey - slope r_q) / sigma_grey`, `e2 = r_q / sigma_q`, so that
@@ -40,4 +40,4 @@ struct ScaleModel {
 [[nodiscard]] ResidualScale reestimateScale(const ResidualView& residuals,
                                             const ResidualScale& previous, const ScaleModel& model);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Inverse depths of one surface differ by less than this share within the fitted window.
@@ -156,4 +156,4 @@ TrackingReference::TrackingReference(const RgbdPyramid& pyramid,
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

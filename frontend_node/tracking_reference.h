@@ -8,7 +8,7 @@
 #include "planecloud_slam/frontend_node/dense_tracker_options.h"
 #include "planecloud_slam/frontend_node/rgbd_pyramid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Points of one pyramid level of the reference, each member one array over all points.
 /// A point lies at (u, v, 1) / q in the optical frame; `grey` and `q` are functions of the
@@ -46,4 +46,4 @@ class TrackingReference {
   std::vector<ReferencePoints> levels_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

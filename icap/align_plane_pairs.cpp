@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kRounding = 1e-12;  // relative size of what double arithmetic makes of a zero
@@ -75,4 +75,4 @@ PlaneAlignment alignPlanePairs(const std::vector<PlanePair>& pairs, double obser
   return alignment;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

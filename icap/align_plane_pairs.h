@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Two planes that are taken for the same one, each in its own frame.
 struct PlanePair {
@@ -33,4 +33,4 @@ struct PlaneAlignment {
 [[nodiscard]] PlaneAlignment alignPlanePairs(const std::vector<PlanePair>& pairs,
                                              double observable_share = 0.0);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/icap/plane_normal_equations.h"
 #include "planecloud_slam/icap/visibility.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kGateShrink = 0.7;     // of the gates from one iteration to the next
@@ -198,4 +198,4 @@ IcapResult icap(const PlaneSet& target, const PlaneSet& source,
   return describe(target, source, progress, status, options);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

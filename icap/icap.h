@@ -10,7 +10,7 @@
 #include "planecloud_slam/icap/plane_set.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 enum class IcapStatus {
   kConverged,     ///< settled, all six directions observed
@@ -43,4 +43,4 @@ struct IcapResult {
                               const Eigen::Isometry3d& T_target_source_guess,
                               const IcapOptions& options = IcapOptions());
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kSmallest = 1e-6;
@@ -68,4 +68,4 @@ void IcapOptions::check() const {
   visibility.check();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

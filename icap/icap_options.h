@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How plane clouds are prepared for alignment.
 struct PlaneSetOptions {
@@ -112,4 +112,4 @@ struct IcapOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

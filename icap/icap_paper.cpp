@@ -5,7 +5,7 @@
 #include "planecloud_slam/icap/align_plane_pairs.h"
 #include "planecloud_slam/icap/kd_tree.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kSettled = 1e-10;  // tau_T: squared Frobenius norm of the transform's change
@@ -54,4 +54,4 @@ PaperAlignment alignAsPrinted(const PlaneSet& target, const PlaneSet& source,
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

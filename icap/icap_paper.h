@@ -9,7 +9,7 @@
 #include "planecloud_slam/icap/patch_matcher.h"
 #include "planecloud_slam/icap/plane_set.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What Algorithm 2 of the paper ends with.
 struct PaperAlignment {
@@ -27,4 +27,4 @@ struct PaperAlignment {
                                             const Eigen::Isometry3d& T_target_source_guess,
                                             int max_iterations);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Nearest neighbours among points of fixed dimension, squared Euclidean distance. nanoflann wants
 /// the points to stay where they are, hence neither copyable nor movable.
@@ -61,4 +61,4 @@ class KdTree {
   nanoflann::KDTreeSingleIndexAdaptor<Metric, Adaptor, Dimension, std::size_t> tree_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

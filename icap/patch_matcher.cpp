@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/icap/kd_tree.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 // The tree knows distances between centroids, the cost forgives what lies within the radii: so ask
@@ -71,4 +71,4 @@ std::vector<PatchMatch> PatchMatcher::match(const Eigen::Isometry3d& T_target_so
   return matches;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/icap/plane_set.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Patches that are taken for the same piece of surface.
 struct PatchMatch {
@@ -42,4 +42,4 @@ class PatchMatcher {
   std::size_t source_count_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Matrix3x6d = Eigen::Matrix<double, 3, 6>;
@@ -122,4 +122,4 @@ Vector6d solveObserved(const PlaneNormalEquations& system, const Observability& 
   return -basis * reduced.ldlt().solve(basis.transpose() * system.gradient);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/icap/patch_matcher.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Gauss-Newton system of matched patches about `T_target_source`, for a twist at the source
 /// (T <- T Exp(xi)). Residuals of a match: the source centroid's distance to the target's plane,
@@ -44,4 +44,4 @@ struct Observability {
 [[nodiscard]] Vector6d solveObserved(const PlaneNormalEquations& system,
                                      const Observability& observability);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 
 #include "planecloud_slam/icap/kd_tree.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -205,4 +205,4 @@ Eigen::Matrix<float, 6, 1> PlaneSet::matchingPoint(const Eigen::Vector3d& centro
   return joined(centroid, normal, contents_->normal_length);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

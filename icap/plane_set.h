@@ -12,7 +12,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 template <int Dimension>
 class KdTree;
@@ -73,4 +73,4 @@ class PlaneSet {
   std::shared_ptr<const Contents> contents_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kRightAngle = 1.5707963267948966;
@@ -79,4 +79,4 @@ VisibilityReport checkVisibility(const PlaneSet& target, const PlaneSet& source,
   return report;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

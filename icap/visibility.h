@@ -7,7 +7,7 @@
 #include "planecloud_slam/icap/icap_options.h"
 #include "planecloud_slam/icap/plane_set.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What the target's camera says of the source's coarse pieces once they are moved into its frame.
 /// Shares are weighted by the pixels of the pieces.
@@ -33,4 +33,4 @@ struct VisibilityReport {
     const PlaneSet& target, const PlaneSet& source, const Eigen::Isometry3d& T_target_source,
     const VisibilityOptions& options = VisibilityOptions());
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

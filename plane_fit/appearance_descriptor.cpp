@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 // All of this is the meaning of version 1 of the bytes: change anything and the version changes.
@@ -191,4 +191,4 @@ std::optional<double> appearanceDissimilarity(const std::vector<std::uint8_t>& a
   return comparison->dissimilarity;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

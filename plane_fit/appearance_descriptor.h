@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/image_view.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A compact description of what a keyframe looks like, for recognising places without any
 /// position: brightness and logarithmic depth on a grid of 20 x 12 cells, four bits each, 241
@@ -40,4 +40,4 @@ struct AppearanceComparison {
 [[nodiscard]] std::optional<double> appearanceDissimilarity(const std::vector<std::uint8_t>& a,
                                                             const std::vector<std::uint8_t>& b);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

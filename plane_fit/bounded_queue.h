@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A first-in first-out queue between one or more producers and consumers.
 /// After `close()` nothing more enters; what is inside can still be taken.
@@ -74,4 +74,4 @@ class BoundedQueue {
   bool closed_ = false;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What one fit may cost (paper sec. 3.3: "until either the bandwidth or computational time
 /// constraints are exceeded or all tiles have been processed"). Default: no limit.
@@ -36,4 +36,4 @@ struct FitBudget {
   }
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Appends little-endian numbers.
 class ByteWriter {
@@ -77,4 +77,4 @@ class ByteReader {
   std::size_t position_ = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

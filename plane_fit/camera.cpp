@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kMaxNewtonSteps = 30;
@@ -112,4 +112,4 @@ Eigen::Vector2d Camera::project(const Eigen::Vector3d& point) const {
   return projectPoint(intrinsics_, point);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

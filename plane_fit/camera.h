@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/image_view.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A pinhole camera with Brown-Conrady lens distortion (OpenCV's plumb_bob). x right, y down,
 /// z forward (REP 103 optical frame); pixel centres at integer coordinates.
@@ -74,4 +74,4 @@ class Camera {
   Image<float> tangents_y_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

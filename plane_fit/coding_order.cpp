@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::string describe(const TileRect& rect) {
@@ -76,4 +76,4 @@ std::vector<TileNode> inCodingOrder(const QuadtreeGrid& grid,
   return ordered;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/quadtree_grid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Place of a node in the walk through all quadtrees, breadth first: level by level, there initial
 /// tile by initial tile in rows, there along the Z-curve. This is the order of a `PlaneCloud`.
@@ -25,4 +25,4 @@ struct TileNode {
 [[nodiscard]] std::vector<TileNode> inCodingOrder(const QuadtreeGrid& grid,
                                                   const std::vector<PlanarTile>& tiles);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/coding_order.h"
 #include "planecloud_slam/plane_fit/quadtree_walk.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint32_t kCompactVersion = 0x21;
@@ -166,4 +166,4 @@ PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   return cloud;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

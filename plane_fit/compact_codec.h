@@ -13,11 +13,11 @@
 ///     ...  range-coded: nodes breadth first, each "tile here", else "split"; after the former the
 ///          plane as three integers less their prediction; ends with the last plane
 ///     u16  CRC-16/CCITT of image width, height (u16 each) and all bytes before
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Throws std::invalid_argument for tiles that cannot be coded.
 [[nodiscard]] EncodedPlaneCloud encodeCompact(const PlaneCloud& cloud, const CodecOptions& options);
 /// Throws PlaneCloudDecodeError.
 [[nodiscard]] PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Depths outside this range [m] are taken for missing.
 inline constexpr float kMinDepth = 0.05F;
@@ -33,4 +33,4 @@ struct DepthTraits<std::uint16_t> {
   }
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

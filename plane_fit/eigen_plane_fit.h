@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/plane_regression.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The paper's fit, kept as the reference of the tests: the eigenvector of the smallest eigenvalue
 /// of the 4x4 scatter matrix (paper eq. (4)) of (u, v, 1, q'), q' the inverse depth in a unit of
@@ -23,4 +23,4 @@ namespace planecloud_slam {
   return -abcd.head<3>() / (abcd(3) * unit);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

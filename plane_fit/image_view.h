@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A read-only window on row-major pixels owned by someone else (a message, an `Image`).
 /// Row `y` starts `y * stride()` pixels after the first; `stride() >= width()`.
@@ -76,4 +76,4 @@ class Image {
   std::vector<Pixel> pixels_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/range_coder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Codes signed integers |value| < 2^26 as zero flag, sign, bit length in unary, then the bits
 /// below the highest one: the first of them modelled, the others raw.
@@ -44,4 +44,4 @@ class IntegerModel {
   AdaptiveBit second_[kMaxBits + 1];
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

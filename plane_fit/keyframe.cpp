@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::string toString(const KeyframeId& id) {
   return id.robot + "/" + std::to_string(id.session) + "/" + std::to_string(id.number);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

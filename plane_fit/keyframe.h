@@ -12,7 +12,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Identity of a keyframe in every graph: taken from the message, never from its topic.
 struct KeyframeId {
@@ -60,4 +60,4 @@ struct Keyframe {
   KeyframeTexture texture;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

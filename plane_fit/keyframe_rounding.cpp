@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kCoverageStep = 1e-4;  // [-]
@@ -108,4 +108,4 @@ Keyframe asTravelled(Keyframe keyframe) {
   return keyframe;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 
 /// Keyframes travel in single precision. What rounding does to them is said here once, so that
 /// both halves in one process give what they give with a network between them.
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Translation [m], then rotation vector [rad].
 using PackedPose = std::array<float, 6>;
@@ -47,4 +47,4 @@ struct PackedStatistics {
 /// The keyframe as the other side receives it.
 [[nodiscard]] Keyframe asTravelled(Keyframe keyframe);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::ptrdiff_t kRowPadding = 16;  // floats a vector kernel may read past a row
@@ -286,4 +286,4 @@ ResidualSums MomentPyramid::residuals(const TileRect& rect, const Eigen::Vector3
   return kernels_.residuals(query);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

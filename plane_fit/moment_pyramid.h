@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/quadtree_grid.h"
 #include "planecloud_slam/plane_fit/tile_kernels.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The moments of every node of the quadtrees over one depth image: cells are summed in one pass
 /// over the pixels, then merged upwards. What depends on the camera alone is computed once.
@@ -128,4 +128,4 @@ class MomentPyramid {
   std::vector<float> columns_n_, columns_q_, columns_qu_, columns_qv_, columns_qq_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

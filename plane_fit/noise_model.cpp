@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 void DepthNoiseModel::check() const {
   checkRange("noise/disparity_step", disparity_step, 1e-5, 0.1);
@@ -16,4 +16,4 @@ double DepthNoiseModel::inverseDepthSigma() const {
   return disparity_step * std::sqrt(disparity_noise * disparity_noise + 1.0 / 12.0);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

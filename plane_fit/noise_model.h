@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Noise of a triangulating depth camera (Kinect, Xtion, Astra): its disparity, hence the inverse
 /// depth, has the same noise everywhere, so depth noise grows as z^2. Keys below `noise/`.
@@ -31,4 +31,4 @@ struct DepthNoiseModel {
   [[nodiscard]] double depthSigma(double z) const { return inverseDepthSigma() * z * z; }
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -20,7 +20,7 @@
 /// Members are bool, int, double, std::string, or an enum with
 /// `std::string toString(E)` and `void fromString(const std::string&, E&)` (throws
 /// std::invalid_argument naming the choices) found by argument-dependent lookup.
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Visits the fields of `options` with `prefix` before each name: `"plane_fit/" + name`.
 template <typename Options, typename Visit>
@@ -38,4 +38,4 @@ void checkRange(const std::string& key, Number value, Number low, Number high) {
   throw std::invalid_argument(text.str());
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

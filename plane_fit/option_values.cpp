@@ -10,7 +10,7 @@
 #include <sstream>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 [[noreturn]] void throwNotA(const std::string& what, const std::string& key,
@@ -96,4 +96,4 @@ std::string nearestKey(const std::string& key, const OptionValues& known) {
   return nearest;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 
 /// Options as text by key, `plane_fit/tolerance` -> `0.01`: the form between the structs and
 /// wherever the values come from (ROS parameters, YAML files, dumps).
-namespace planecloud_slam {
+namespace planecloud {
 
 using OptionValues = std::map<std::string, std::string>;
 
@@ -69,4 +69,4 @@ void takeOptions(OptionValues& values, Options& options, const std::string& pref
 /// Empty when `known` is.
 [[nodiscard]] std::string nearestKey(const std::string& key, const OptionValues& known);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

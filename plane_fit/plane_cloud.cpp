@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 Eigen::Vector4d PlanarTile::plane() const {
   // q = alpha u + beta v + gamma times z: (alpha beta gamma) . p = 1, so d = 1 / norm and
@@ -30,4 +30,4 @@ void fromString(const std::string& text, PlaneCloudEncoding& encoding) {
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

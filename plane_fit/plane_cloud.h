@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/plane_fit/camera.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A rectangle of pixels: columns [x, x + width), rows [y, y + height).
 struct TileRect {
@@ -86,4 +86,4 @@ struct EncodedPlaneCloud {
   PlaneCloudStatistics statistics;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

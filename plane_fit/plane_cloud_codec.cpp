@@ -6,7 +6,7 @@
 #include "planecloud_slam/plane_fit/raw_codec.h"
 #include "planecloud_slam/plane_fit/tile_quantiser.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 void CodecOptions::check() const {
   checkRange("codec/quantisation_step", quantisation_step,
@@ -44,4 +44,4 @@ PlaneCloud quantise(const PlaneCloud& cloud, const CodecOptions& options) {
   return decode(encode(cloud, unlimited));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

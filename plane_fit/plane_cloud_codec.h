@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/option_fields.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Options of `encode`, keys below `codec/`.
 struct CodecOptions {
@@ -47,4 +47,4 @@ class PlaneCloudDecodeError : public std::runtime_error {
 /// `cloud` as the receiver of `encode(cloud, options)` will see it (without a byte budget).
 [[nodiscard]] PlaneCloud quantise(const PlaneCloud& cloud, const CodecOptions& options);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

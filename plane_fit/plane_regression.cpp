@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/plane_regression.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Mean square spread of pixels below which a direction counts as not spanned, relative to the
@@ -61,4 +61,4 @@ Eigen::Vector3d regressInverseDepth(const TileMoments& m) {
   return {alpha, beta, (m.q - alpha * m.u - beta * m.v) / m.n};
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The paper's scatter matrix of a tile (eq. (4)) as sums over its pixels with depth: tangents
 /// u, v [-] about any fixed origin, inverse depth q [1/m].
@@ -26,4 +26,4 @@ struct TangentScatterInverse {
 };
 [[nodiscard]] TangentScatterInverse invertTangentScatter(const TileMoments& moments);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 #include "planecloud_slam/plane_fit/tile_fitter.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Tiles between two looks at the clock.
@@ -201,4 +201,4 @@ PlaneCloud QuadtreeFitter::fit(ImageView<std::uint16_t> depth, const FitBudget& 
 const QuadtreeFitterOptions& QuadtreeFitter::options() const { return impl_->options(); }
 const Camera& QuadtreeFitter::camera() const { return impl_->camera(); }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Turns depth images into plane clouds: the paper's Algorithm 1, fitted by regression in inverse
 /// depth on moments that are summed once and merged upwards. One per thread: it keeps its
@@ -40,4 +40,4 @@ class QuadtreeFitter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

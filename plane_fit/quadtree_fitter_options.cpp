@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 std::string toString(AcceptanceRule rule) {
   switch (rule) {
@@ -64,4 +64,4 @@ void QuadtreeFitterOptions::check() const {
   checkRange("plane_fit/byte_budget", byte_budget, 0, 1 << 30);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How the allowed mean error of a tile grows with its depth z.
 enum class AcceptanceRule {
@@ -62,4 +62,4 @@ struct QuadtreeFitterOptions {
   void check() const;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

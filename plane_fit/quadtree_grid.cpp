@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/option_fields.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 int ceilHalf(int side) { return (side + 1) / 2; }
@@ -83,4 +83,4 @@ std::optional<QuadtreeNode> QuadtreeGrid::find(const TileRect& rect) const {
   return std::nullopt;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A node of the quadtrees: level 0 holds the initial tiles.
 struct QuadtreeNode {
@@ -56,4 +56,4 @@ class QuadtreeGrid {
   std::vector<int> y_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -14,7 +14,7 @@
 
 /// The body of a COMPACT stream, one routine for both directions: `Coder` is a `RangeEncoder` or a
 /// `RangeDecoder`, `Plan` a `CodingPlan` or `NoPlan`.
-namespace planecloud_slam {
+namespace planecloud {
 
 inline constexpr std::size_t kMaxQuadtreeLevels = 8;  // 80 px down to 2 px
 inline constexpr std::size_t kSpreadClasses = 10;
@@ -187,4 +187,4 @@ std::size_t walkQuadtrees(const QuadtreeGrid& grid, const TileQuantiser& quantis
   return coded;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

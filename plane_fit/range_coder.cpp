@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/range_coder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint32_t kMinRange = 1U << 24;
@@ -119,4 +119,4 @@ void RangeDecoder::normalise() {
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

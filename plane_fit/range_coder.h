@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The probability of a bit being 1, learnt while coding: the mean of a fast and a slow estimate,
 /// both of which begin as running means.
@@ -100,4 +100,4 @@ class RangeDecoder {
   std::uint32_t range_ = 0xFFFFFFFFU;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/byte_stream.h"
 #include "planecloud_slam/plane_fit/coding_order.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint32_t kRawVersion = 0x11;
@@ -114,4 +114,4 @@ PlaneCloud decodeRaw(const EncodedPlaneCloud& encoded) {
   return cloud;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

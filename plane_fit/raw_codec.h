@@ -10,11 +10,11 @@
 ///     u8   initial tile width, initial tile height, min tile [px]
 ///     u32  number of planes
 ///     8 float32 a plane: a b c d [-, m] of the Hessian normal form, x y width height [px]
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Throws std::invalid_argument for tiles that cannot be coded.
 [[nodiscard]] EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options);
 /// Throws PlaneCloudDecodeError.
 [[nodiscard]] PlaneCloud decodeRaw(const EncodedPlaneCloud& encoded);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 void checkCamera(const PlaneCloud& cloud, const Camera& camera) {
@@ -72,4 +72,4 @@ std::optional<std::array<Eigen::Vector3d, 4>> tileCorners(const PlanarTile& tile
   return corners;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

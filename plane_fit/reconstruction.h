@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The depth image [m] that `cloud` stands for, height x width of its camera; NaN where no tile
 /// lies. Throws std::invalid_argument when `camera` is not the cloud's.
@@ -28,4 +28,4 @@ namespace planecloud_slam {
 [[nodiscard]] std::optional<std::array<Eigen::Vector3d, 4>> tileCorners(
     const PlanarTile& tile, const CameraIntrinsics& camera, double max_depth = 20.0);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kSmallAngle = 1e-5;
@@ -81,4 +81,4 @@ Matrix6d invertRelativePoseInformation(const Eigen::Isometry3d& T_a_b,
   return to_b.transpose() * information * to_b;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 /// The error of a measured relative pose is `Log(T_measured^-1 * T_estimate)`, so covariances and
 /// information matrices of a relative pose `T_a_b` live in the tangent space at `b`
 /// (right perturbation, axes of frame `b`).
-namespace planecloud_slam {
+namespace planecloud {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -41,4 +41,4 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 [[nodiscard]] Matrix6d invertRelativePoseInformation(const Eigen::Isometry3d& T_a_b,
                                                      const Matrix6d& information);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Planes are only kept where their inverse depth is at least this inside the tile [1/m]: 64 m.
@@ -134,4 +134,4 @@ std::optional<TileFit> TileFitter::measure(const TileRect& rect, const Eigen::Ve
   return fit;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

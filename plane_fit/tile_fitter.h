@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A plane of inverse depth in the tangents about the centre of the node's initial tile,
 /// and how well it fits.
@@ -53,4 +53,4 @@ class TileFitter {
   QuadtreeFitterOptions options_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

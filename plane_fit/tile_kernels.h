@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Row-major float planes of one image with padded rows: every row may be read 16 floats past its
 /// end. Tangents (u, v) are about the centre of the initial tile they lie in.
@@ -85,4 +85,4 @@ struct TileKernels {
 /// The best this processor has, chosen at run time; the scalar ones when built without Highway.
 [[nodiscard]] const TileKernels& vectorTileKernels();
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/tile_kernels_scalar.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 const TileKernels& scalarTileKernels() {
   static const TileKernels kernels{
@@ -25,4 +25,4 @@ const TileKernels& scalarTileKernels() {
 const TileKernels& vectorTileKernels() { return scalarTileKernels(); }
 #endif
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/tile_kernels.h"
 
 /// The scalar loops, which the vector kernels also use for what a vector does not fill.
-namespace planecloud_slam::scalar {
+namespace planecloud::scalar {
 
 /// Columns [first, strip.width).
 template <typename Pixel>
@@ -70,4 +70,4 @@ inline ResidualSums residuals(const ResidualQuery& query) {
   return sums;
 }
 
-}  // namespace planecloud_slam::scalar
+}  // namespace planecloud::scalar

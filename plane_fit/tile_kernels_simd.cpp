@@ -9,7 +9,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace planecloud_slam::HWY_NAMESPACE {
+namespace planecloud::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Inverse depth [1/m] of a vector of pixels, 0 where there is none (see DepthTraits).
@@ -130,11 +130,11 @@ ResidualSums residuals(const ResidualQuery& query) {
 
 const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 
-}  // namespace planecloud_slam::HWY_NAMESPACE
+}  // namespace planecloud::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace planecloud_slam {
+namespace planecloud {
 
 HWY_EXPORT(sumColumnsF32);
 HWY_EXPORT(sumColumnsU16);
@@ -152,5 +152,5 @@ const TileKernels& vectorTileKernels() {
   return kernels;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud
 #endif  // HWY_ONCE

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Nearest integer of numerator / denominator (> 0), half away from zero, within
@@ -127,4 +127,4 @@ QuantisedPlane TilePredictor::predictSlopes(const Candidates& candidates,
   return best;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

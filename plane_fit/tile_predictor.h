@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/tile_quantiser.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What the tiles coded so far say about the next one. Integers only.
 class TilePredictor {
@@ -51,4 +51,4 @@ class TilePredictor {
   std::vector<Placed> placed_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 double asSingle(double value) { return static_cast<double>(static_cast<float>(value)); }
@@ -109,4 +109,4 @@ std::optional<PlanarTile> TileQuantiser::dequantise(const QuantisedPlane& plane,
   return toTile(plane, rect, *at);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/quadtree_grid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A plane over a tile in integers: inverse depth at the tile's centre and its change from there
 /// to the right and to the lower edge, in units of `TileQuantiser::unit()`.
@@ -65,4 +65,4 @@ class TileQuantiser {
   double unit_;  // [1/m]
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 #include "planecloud_slam/planecloud_msgs/robot_name.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kMaxReferences = 4096;      // edges or hints of one keyframe
@@ -48,8 +48,8 @@ Eigen::Isometry3d readPose(const WireVector& translation, const WireVector& rota
       {translation[0], translation[1], translation[2], rotation[0], rotation[1], rotation[2]});
 }
 
-KeyframeReference writeReference(const KeyframeId& id, const KeyframeId& owner) {
-  KeyframeReference reference;
+planecloud_slam::KeyframeReference writeReference(const KeyframeId& id, const KeyframeId& owner) {
+  planecloud_slam::KeyframeReference reference;
   reference.id = id.number;
   if (id.robot != owner.robot || id.session != owner.session) {
     checkRobotName(id.robot);
@@ -60,8 +60,8 @@ KeyframeReference writeReference(const KeyframeId& id, const KeyframeId& owner) 
   return reference;
 }
 
-KeyframeId readReference(const KeyframeReference& reference, const KeyframeId& owner,
-                         const std::string& field) {
+KeyframeId readReference(const planecloud_slam::KeyframeReference& reference,
+                         const KeyframeId& owner, const std::string& field) {
   if (reference.session.size() > 1) {
     refuseMessage(field + " names " + std::to_string(reference.session.size()) +
                   " sessions: at most 1");
@@ -76,8 +76,8 @@ KeyframeId readReference(const KeyframeReference& reference, const KeyframeId& o
   return id;
 }
 
-RelativePoseEdgeMessage writeEdge(const RelativePoseEdge& edge, const KeyframeId& owner) {
-  RelativePoseEdgeMessage message;
+planecloud_slam::RelativePoseEdge writeEdge(const RelativePoseEdge& edge, const KeyframeId& owner) {
+  planecloud_slam::RelativePoseEdge message;
   message.other = writeReference(edge.other, owner);
   writePose(edge.T_other_this, message.translation, message.rotation);
   const PackedInformation packed = packInformation(edge.information);
@@ -85,7 +85,7 @@ RelativePoseEdgeMessage writeEdge(const RelativePoseEdge& edge, const KeyframeId
   return message;
 }
 
-RelativePoseEdge readEdge(const RelativePoseEdgeMessage& message, const KeyframeId& owner,
+RelativePoseEdge readEdge(const planecloud_slam::RelativePoseEdge& message, const KeyframeId& owner,
                           const std::string& field) {
   RelativePoseEdge edge;
   edge.other = readReference(message.other, owner, field);
@@ -107,7 +107,7 @@ void checkCount(const std::string& field, std::size_t count, std::size_t most) {
                 std::to_string(most));
 }
 
-KeyframeTexture readTexture(const KeyframeMessage& message) {
+KeyframeTexture readTexture(const planecloud_slam::PlaneCloudKeyframe& message) {
   if (message.texture_format >= kTextureFormats.size()) {
     refuseMessage(
         "texture format " + std::to_string(message.texture_format) +
@@ -129,7 +129,7 @@ std::uint8_t textureFormatNumber(const std::string& format) {
   return static_cast<std::uint8_t>(found - kTextureFormats.begin());
 }
 
-Keyframe readKeyframe(const KeyframeMessage& message, KeyframeId id) {
+Keyframe readKeyframe(const planecloud_slam::PlaneCloudKeyframe& message, KeyframeId id) {
   Keyframe keyframe;
   keyframe.id = std::move(id);
   keyframe.stamp = message.plane_cloud.header.stamp.toSec();
@@ -152,9 +152,10 @@ Keyframe readKeyframe(const KeyframeMessage& message, KeyframeId id) {
 
 }  // namespace
 
-KeyframeMessage toMessage(const Keyframe& keyframe, const std::string& frame_id) {
+planecloud_slam::PlaneCloudKeyframe toMessage(const Keyframe& keyframe,
+                                              const std::string& frame_id) {
   checkRobotName(keyframe.id.robot);
-  KeyframeMessage message;
+  planecloud_slam::PlaneCloudKeyframe message;
   message.robot = keyframe.id.robot;
   message.session = keyframe.id.session;
   message.id = keyframe.id.number;
@@ -172,7 +173,7 @@ KeyframeMessage toMessage(const Keyframe& keyframe, const std::string& frame_id)
   return message;
 }
 
-Keyframe fromMessage(const KeyframeMessage& message) {
+Keyframe fromMessage(const planecloud_slam::PlaneCloudKeyframe& message) {
   if (!isRobotName(message.robot))
     refuseMessage("keyframe refused: " + robotNameError(message.robot));
   const KeyframeId id{message.robot, message.session, message.id};
@@ -183,4 +184,4 @@ Keyframe fromMessage(const KeyframeMessage& message) {
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

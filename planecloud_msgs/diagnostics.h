@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// One status of a node for `/diagnostics`, filled line by line.
 class DiagnosticStatus {
@@ -46,4 +46,4 @@ class DiagnosticStatus {
   diagnostic_msgs::DiagnosticStatus status_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint32_t kMaxSide = 8192;  // [px], as CameraIntrinsics::check
@@ -174,4 +174,4 @@ CameraIntrinsics fromMessage(const sensor_msgs::CameraInfo& message, bool rectif
   return camera;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/planecloud_msgs/message_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Depth [m], NaN: none, of a 16UC1 (or mono16) image in mm with 0 = none, or of a 32FC1 one in m,
 /// where what is not finite or not positive is none. Either byte order.
@@ -29,4 +29,4 @@ namespace planecloud_slam {
 /// model, binning or a region of interest, and for intrinsics that fail their check.
 [[nodiscard]] CameraIntrinsics fromMessage(const sensor_msgs::CameraInfo& message, bool rectified);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

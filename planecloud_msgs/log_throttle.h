@@ -12,7 +12,7 @@
 #include <mutex>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Says the same thing once per `period` [s] by the wall clock: rosconsole's own throttle stands
 /// still with simulated time. Texts that differ in their numbers alone are the same, unless
@@ -54,4 +54,4 @@ class LogThrottle {
   std::map<std::string, ros::WallTime> said_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

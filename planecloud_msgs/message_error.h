@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A received message that is truncated, inconsistent or says the impossible. The text names the
 /// field, its value and, where there is one, the cure.
@@ -16,4 +16,4 @@ class MessageError : public std::runtime_error {
 
 [[noreturn]] inline void refuseMessage(const std::string& reason) { throw MessageError(reason); }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

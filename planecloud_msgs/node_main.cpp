@@ -8,7 +8,7 @@
 #include <csignal>
 #include <exception>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
@@ -39,4 +39,4 @@ void spinUntilStopped() {
   while (ros::ok() && stop_requested == 0) ros::WallDuration(0.05).sleep();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

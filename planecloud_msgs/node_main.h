@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Initialises ROS so that SIGINT and SIGTERM leave the node connected until `run` returns, and
 /// serves its callbacks in two threads meanwhile. Returns the exit code: 1, with one fatal message,
@@ -15,4 +15,4 @@ int runNode(int argc, char** argv, const std::string& name, const std::function<
 /// Returns at SIGINT, SIGTERM or when ROS shuts down.
 void spinUntilStopped();
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

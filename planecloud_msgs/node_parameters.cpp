@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Read by image_transport and roscpp themselves.
@@ -66,4 +66,4 @@ void warnUnknownParameters(const std::string& name_space, const OptionValues& un
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/option_values.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// All parameters below `node`, nested names joined by `/` (`link/outbox_bytes`), items of a list
 /// by spaces. Throws std::invalid_argument for types that no option has.
@@ -31,4 +31,4 @@ template <typename Options>
   return options;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

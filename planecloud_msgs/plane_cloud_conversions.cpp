@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 #include "planecloud_slam/planecloud_msgs/conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint32_t kNanoseconds = 1000000000;
@@ -18,7 +18,7 @@ constexpr std::uint8_t kStoppedByBytes = 2;
 
 constexpr std::uint64_t kRawPlaneBytes = 32;
 
-CameraIntrinsics readCamera(const PlaneCloudMessage& message) {
+CameraIntrinsics readCamera(const planecloud_slam::PlaneCloud& message) {
   CameraIntrinsics camera;
   camera.width = message.width;
   camera.height = message.height;
@@ -66,10 +66,10 @@ void checkPlaneCount(const EncodedPlaneCloud& planes) {
 
 }  // namespace
 
-PlaneCloudMessage toMessage(const EncodedPlaneCloud& planes, double stamp,
-                            const std::string& frame_id) {
+planecloud_slam::PlaneCloud toMessage(const EncodedPlaneCloud& planes, double stamp,
+                                      const std::string& frame_id) {
   planes.camera.check();
-  PlaneCloudMessage message;
+  planecloud_slam::PlaneCloud message;
   message.header.stamp = ros::Time(stamp);
   message.header.frame_id = frame_id;
   message.fx = static_cast<float>(planes.camera.fx);
@@ -96,7 +96,7 @@ PlaneCloudMessage toMessage(const EncodedPlaneCloud& planes, double stamp,
   return message;
 }
 
-EncodedPlaneCloud fromMessage(const PlaneCloudMessage& message) {
+EncodedPlaneCloud fromMessage(const planecloud_slam::PlaneCloud& message) {
   if (message.header.stamp.nsec >= kNanoseconds) {
     refuseMessage("stamp has " + std::to_string(message.header.stamp.nsec) +
                   " nanoseconds: must be below 1000000000");
@@ -114,4 +114,4 @@ EncodedPlaneCloud fromMessage(const PlaneCloudMessage& message) {
   return planes;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/reconstruction.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 geometry_msgs::Point toPoint(const Eigen::Vector3d& point) {
@@ -43,4 +43,4 @@ visualization_msgs::Marker makeTriangleMarker(std::vector<geometry_msgs::Point> 
   return marker;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Two triangles for each tile of `cloud`, three points each [m], in its optical frame, front sides
 /// towards the camera. Tiles that reach beyond `max_depth` [m] are left out.
@@ -21,4 +21,4 @@ namespace planecloud_slam {
 [[nodiscard]] visualization_msgs::Marker makeTriangleMarker(
     std::vector<geometry_msgs::Point> triangles, const std_msgs::ColorRGBA& color);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

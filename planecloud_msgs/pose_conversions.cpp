@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kMaxNormError = 0.01;  // what drivers that publish float32 or text stay below
@@ -68,4 +68,4 @@ Eigen::Isometry3d fromMessage(const geometry_msgs::Transform& transform) {
   return read(transform.translation, transform.rotation);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

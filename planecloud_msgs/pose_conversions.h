@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/planecloud_msgs/message_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// `T_frame_body` as the pose of `body` in `frame`.
 [[nodiscard]] geometry_msgs::Pose toPoseMessage(const Eigen::Isometry3d& T_frame_body);
@@ -21,4 +21,4 @@ namespace planecloud_slam {
 [[nodiscard]] Eigen::Isometry3d fromMessage(const geometry_msgs::Pose& pose);
 [[nodiscard]] Eigen::Isometry3d fromMessage(const geometry_msgs::Transform& transform);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kMaxRobotName = 64;
@@ -39,4 +39,4 @@ void checkRobotName(const std::string& name) {
   if (!isRobotName(name)) throw std::invalid_argument(robotNameError(name));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

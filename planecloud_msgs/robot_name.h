@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Robot names become parts of topics, frames and file names: 1 to 64 letters, digits, `_` or `-`.
 [[nodiscard]] bool isRobotName(const std::string& name);
@@ -15,4 +15,4 @@ namespace planecloud_slam {
 /// Throws std::invalid_argument with `robotNameError`.
 void checkRobotName(const std::string& name);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/rosbags/seeded_random.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kNoAnswer = std::numeric_limits<float>::quiet_NaN();
@@ -206,4 +206,4 @@ Image<Rgb8> toRgb8(const Image<Eigen::Array3f>& color) {
   return pixels;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

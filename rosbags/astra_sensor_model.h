@@ -8,7 +8,7 @@
 #include "planecloud_slam/rosbags/hallway_renderer.h"
 #include "planecloud_slam/rosbags/rgb8.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Figures of an Orbbec Astra as published for it and its kind; lengths on the sensor in pixels of
 /// its 640 x 480 depth image, whatever size is rendered.
@@ -61,4 +61,4 @@ class AstraSensorModel {
 [[nodiscard]] Image<std::uint16_t> toMillimetres(const Image<float>& depth);
 [[nodiscard]] Image<Rgb8> toRgb8(const Image<Eigen::Array3f>& color);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

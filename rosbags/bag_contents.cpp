@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 bool contains(const std::string& text, const char* part) {
@@ -116,4 +116,4 @@ std::vector<RobotTopics> findRobots(const std::string& path, const std::vector<B
   return robots;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

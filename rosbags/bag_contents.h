@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A topic of a bag and its message type, e.g. "sensor_msgs/Image".
 struct BagTopic {
@@ -29,4 +29,4 @@ struct RobotTopics {
 [[nodiscard]] std::vector<RobotTopics> findRobots(const std::string& path,
                                                   const std::vector<BagTopic>& topics);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -14,7 +14,7 @@
 #include "planecloud_slam/planecloud_msgs/image_conversions.h"
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kPairTolerance = 0.02 + 1e-6;  // between the stamps of a pair, rounded [s]
@@ -230,4 +230,4 @@ std::vector<std::unique_ptr<Recording>> openBag(
   return recordings;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -18,7 +18,7 @@
 #include "planecloud_slam/rosbags/recording.h"
 #include "planecloud_slam/rosbags/recovered_bag.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Where to find a bag's messages: the file itself, or what could be recovered of it.
 struct BagSource {
@@ -79,4 +79,4 @@ class BagRecording : public Recording {
 [[nodiscard]] std::vector<std::unique_ptr<Recording>> openBag(
     const std::string& path, const std::function<void(const std::string&)>& warn = {});
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -17,7 +17,7 @@
 
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 sensor_msgs::Image imageMessage(const cv::Mat& pixels, const std::string& encoding) {
@@ -196,4 +196,4 @@ void BagWriter::writeStaticTransforms(
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -14,7 +14,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Where a camera's images go. Topics start with a slash.
 struct CameraTopics {
@@ -85,4 +85,4 @@ class BagWriter {
 /// Nearest nanosecond.
 [[nodiscard]] ros::Time toRosTime(double stamp);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 template <typename Value>
@@ -103,4 +103,4 @@ CameraIntrinsics parseCameraFlag(const std::string& text) {
   return camera;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/camera.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What a camera.yaml says: fx, fy, cx, cy [px], optional distortion [k1, k2, p1, p2, k3], optional
 /// width and height [px] (0: not said) and depth_scale (depth pixels per metre).
@@ -23,4 +23,4 @@ struct CameraFile {
 /// 0. Throws UsageError.
 [[nodiscard]] CameraIntrinsics parseCameraFlag(const std::string& text);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

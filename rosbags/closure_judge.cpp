@@ -12,7 +12,7 @@
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
 #include "planecloud_slam/rosbags/view_samples.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kTranslationLimit = 0.1;              // [m]
@@ -123,4 +123,4 @@ ClosureJudgement judgeClosures(const MapSnapshot& map, const std::vector<RobotTr
   return judgement;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

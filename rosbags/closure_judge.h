@@ -9,7 +9,7 @@
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What ground truth says of a loop closure.
 enum class ClosureVerdict {
@@ -49,4 +49,4 @@ struct RobotTruth {
 [[nodiscard]] ClosureJudgement judgeClosures(const MapSnapshot& map,
                                              const std::vector<RobotTruth>& truths);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

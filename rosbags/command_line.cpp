@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/option_fields.h"
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace po = boost::program_options;
 namespace {
 
@@ -86,4 +86,4 @@ void checkFlag(const std::string& flag, double value, double low, double high) {
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

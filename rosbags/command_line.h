@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What a tool says of itself and which flags it knows.
 struct ToolDescription {
@@ -33,4 +33,4 @@ using ParsedFlags = boost::program_options::variables_map;
 /// Throws UsageError `--flag = value: must be in [low, high]`.
 void checkFlag(const std::string& flag, double value, double low, double high);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

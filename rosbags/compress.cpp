@@ -14,7 +14,7 @@
 #include "planecloud_slam/rosbags/progress_bar.h"
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace po = boost::program_options;
@@ -149,9 +149,8 @@ int compress(const ParsedFlags& flags) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud
 
 int main(int argc, char** argv) {
-  return planecloud_slam::runTool(planecloud_slam::describe(), argc, argv,
-                                  planecloud_slam::compress);
+  return planecloud::runTool(planecloud::describe(), argc, argv, planecloud::compress);
 }

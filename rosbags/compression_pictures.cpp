@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/plane_fit/depth_traits.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kNearest = 0.4F;      // [m]
@@ -104,4 +104,4 @@ void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::
   writePicture(prefix + "_tiles.png", drawTiles(background, compressed.cloud));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

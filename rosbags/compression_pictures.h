@@ -10,7 +10,7 @@
 #include "planecloud_slam/rosbags/compression_trial.h"
 
 /// Pictures of one compressed frame, 8UC3, blue first.
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Depth [m] in colours from 0.4 m (red) to 8 m (blue), evenly in inverse depth; black: none.
 [[nodiscard]] cv::Mat drawDepth(const Image<float>& depth);
@@ -27,4 +27,4 @@ namespace planecloud_slam {
 void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::Mat& color,
                    const CompressedFrame& compressed);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/rosbags/sample_statistics.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -121,4 +121,4 @@ std::string CompressionReport::csvLine(const CompressedFrame& frame) {
   return line + format("%.4f,%.4f", kMilli * frame.truth->compressed, kMilli * frame.truth->raw);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

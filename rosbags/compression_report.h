@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/rosbags/compression_trial.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The figures of all frames, kept while the frames themselves are let go.
 class CompressionReport {
@@ -31,4 +31,4 @@ class CompressionReport {
   std::vector<double> true_errors_, raw_true_errors_;      ///< [m]
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

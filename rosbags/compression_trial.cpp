@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/reconstruction.h"
 #include "planecloud_slam/rosbags/stopwatch.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Sum and number of what is added.
@@ -97,4 +97,4 @@ CompressedFrame CompressionTrial::compress(const RgbdFrame& frame,
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

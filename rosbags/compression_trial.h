@@ -12,7 +12,7 @@
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How frames are compressed.
 struct CompressionOptions {
@@ -61,4 +61,4 @@ class CompressionTrial {
   QuadtreeFitter fitter_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/rosbags/trajectory_file.h"
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace po = boost::program_options;
@@ -82,9 +82,8 @@ int evaluate(const ParsedFlags& flags) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud
 
 int main(int argc, char** argv) {
-  return planecloud_slam::runTool(planecloud_slam::describe(), argc, argv,
-                                  planecloud_slam::evaluate);
+  return planecloud::runTool(planecloud::describe(), argc, argv, planecloud::evaluate);
 }

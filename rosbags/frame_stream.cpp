@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/rosbags/read_ahead.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// The streams' next steps, fetched when first asked for.
@@ -55,4 +55,4 @@ FrameStream readAhead(FrameStream stream, std::size_t ahead) {
   return [reader] { return reader->next(); };
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A keyframe as the backend receives it, and what it cost.
 struct ReplayedKeyframe {
@@ -39,4 +39,4 @@ using FrameStream = std::function<std::optional<ReplayedFrame>()>;
 /// The same steps, taken from `stream` by a thread of its own that runs up to `ahead` steps ahead.
 [[nodiscard]] FrameStream readAhead(FrameStream stream, std::size_t ahead);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 #include "planecloud_slam/rosbags/bag_writer.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Transforms = std::vector<geometry_msgs::TransformStamped>;
@@ -115,4 +115,4 @@ void writeHallwayBag(const HallwayBagOptions& options, const std::string& path,
   bag.close();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

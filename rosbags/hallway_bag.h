@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/rosbags/hallway_recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How a run of the built-in world becomes a bag.
 struct HallwayBagOptions {
@@ -26,4 +26,4 @@ struct HallwayBagOptions {
 void writeHallwayBag(const HallwayBagOptions& options, const std::string& path,
                      const std::function<void()>& progress = {});
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

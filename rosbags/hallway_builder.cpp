@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/rosbags/hallway_surfaces.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 HallwayBuilder::HallwayBuilder(std::uint64_t seed) : random_(hashOf(seed, 0x77)) {
   mixPalette(seed);
@@ -96,4 +96,4 @@ void HallwayBuilder::addAtWall(const WallFace& face, double along, const Eigen::
   solids_.push_back(solid);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 #include "planecloud_slam/rosbags/hallway_world.h"
 #include "planecloud_slam/rosbags/seeded_random.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Indices of the materials that walls, doors and furniture share.
 struct HallwayPalette {
@@ -84,4 +84,4 @@ constexpr double kCeilingHeight = 2.6;
 /// furniture of the rooms. Keeps a lane of 0.65 m to each side of the hallways' middle free.
 void furnish(HallwayBuilder& builder);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

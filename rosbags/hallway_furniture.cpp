@@ -6,7 +6,7 @@
 #include "planecloud_slam/rosbags/hallway_builder.h"
 #include "planecloud_slam/rosbags/hallway_surfaces.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kMaxDepth = 0.42;  // of what stands in a hallway [m]
@@ -196,4 +196,4 @@ void furnish(HallwayBuilder& builder) {
   furnishRooms(builder);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/seeded_random.h"
 #include "planecloud_slam/rosbags/sequence_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint64_t kStartSeconds = 1600000000;  // of every recording, since the epoch
@@ -120,4 +120,4 @@ std::vector<std::unique_ptr<HallwayRecording>> makeHallwayRecordings(
   return recordings;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -15,7 +15,7 @@
 #include "planecloud_slam/rosbags/recording.h"
 #include "planecloud_slam/rosbags/robot_path.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// 640 x 480 pixels, focal length 570 px.
 [[nodiscard]] CameraIntrinsics astraCamera();
@@ -79,4 +79,4 @@ class HallwayRecording : public Recording {
 [[nodiscard]] std::vector<std::unique_ptr<HallwayRecording>> makeHallwayRecordings(
     const HallwayOptions& options);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Where the four rays of an edge pixel go, on a rotated grid [px].
@@ -156,4 +156,4 @@ Eigen::Array3f HallwayRenderer::edgeColor(int x, int y) const {
   return sum;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/rosbags/hallway_world.h"
 #include "planecloud_slam/rosbags/placed_solid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What an ideal camera sees: no noise, no limit of range.
 struct RenderedView {
@@ -60,4 +60,4 @@ class HallwayRenderer {
   Image<std::int32_t> surfaces_;              ///< per pixel: 8 * index into placed_ + face; -1 none
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

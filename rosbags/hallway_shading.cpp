@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kBlotchMetres = 9.7F;  // side of the blotch texture on a surface
@@ -110,4 +110,4 @@ Eigen::Array3f shade(const HallwayWorld& world, const PlacedSolid& placed, const
   return material.kind == Material::Kind::kGlass ? color : Eigen::Array3f(light * color);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/rosbags/hallway_world.h"
 #include "planecloud_slam/rosbags/placed_solid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Angle between neighbouring pixels as tangents: 1 / fx and 1 / fy.
 struct PixelPitch {
@@ -21,4 +21,4 @@ struct PixelPitch {
 [[nodiscard]] Eigen::Array3f shade(const HallwayWorld& world, const PlacedSolid& placed,
                                    const SurfaceHit& hit, const PixelPitch& pitch);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

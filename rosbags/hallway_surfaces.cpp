@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/rosbags/seeded_random.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kSurfaceSide = 512;  // [texel]
@@ -235,4 +235,4 @@ Picture makeWindowTexture(std::uint64_t seed) {
   return Picture(std::move(view));
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

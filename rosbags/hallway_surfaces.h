@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/rosbags/hallway_texture.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 using Modulation = MipTexture<std::uint8_t>;
 using Picture = MipTexture<Rgb8>;
@@ -31,4 +31,4 @@ using Picture = MipTexture<Rgb8>;
 /// What is seen through a window: a bright sky over roofs.
 [[nodiscard]] Picture makeWindowTexture(std::uint64_t seed);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

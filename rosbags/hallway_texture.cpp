@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kMaxProbes = 3;
@@ -126,4 +126,4 @@ typename MipTexture<Texel>::Value MipTexture<Texel>::sampleFinest(
 template class MipTexture<std::uint8_t>;
 template class MipTexture<Rgb8>;
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

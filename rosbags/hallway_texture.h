@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/rosbags/rgb8.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The part of a surface that one pixel sees, in texels: its centre and its longest extent.
 struct TextureFootprint {
@@ -47,4 +47,4 @@ class MipTexture {
 extern template class MipTexture<std::uint8_t>;
 extern template class MipTexture<Rgb8>;
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include "planecloud_slam/rosbags/hallway_builder.h"
 #include "planecloud_slam/rosbags/hallway_surfaces.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 enum class OpeningKind { kClosedDoor, kOpenDoor, kPassage, kWindow };
@@ -242,4 +242,4 @@ std::vector<Eigen::Vector2d> buildWalls(HallwayBuilder& builder) {
   return lamps;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

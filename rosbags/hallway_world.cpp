@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/rosbags/hallway_builder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kLightCell = 0.25;               // [m]
@@ -79,4 +79,4 @@ double HallwayWorld::clearance(double x, double y, double height) const {
   return nearest;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

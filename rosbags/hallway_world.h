@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/rosbags/hallway_texture.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What a surface looks like. Its colour is `tint * (1 + contrast * (texel - 128) / 128)` for a
 /// modulation, and the texel itself times `tint` / 255 for a picture; both times the light.
@@ -73,4 +73,4 @@ class HallwayWorld {
   Image<float> light_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/rosbags/keyframe_wire_size.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kLength = 4;  // before every string and every array of variable length
@@ -42,4 +42,4 @@ std::size_t keyframeWireSize(const Keyframe& keyframe, const std::string& frame_
   return size;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

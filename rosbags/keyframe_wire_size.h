@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/keyframe.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Optical frame that `keyframeWireSize` counts: the usual one of OpenNI cameras.
 constexpr const char* kUsualOpticalFrame = "camera_rgb_optical_frame";
@@ -17,4 +17,4 @@ constexpr const char* kUsualOpticalFrame = "camera_rgb_optical_frame";
 [[nodiscard]] std::size_t keyframeWireSize(const Keyframe& keyframe,
                                            const std::string& frame_id = kUsualOpticalFrame);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/rosbags/progress_bar.h"
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace po = boost::program_options;
@@ -62,8 +62,8 @@ int run(const ParsedFlags& flags) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud
 
 int main(int argc, char** argv) {
-  return planecloud_slam::runTool(planecloud_slam::description(), argc, argv, planecloud_slam::run);
+  return planecloud::runTool(planecloud::description(), argc, argv, planecloud::run);
 }

@@ -12,7 +12,7 @@
 #include "planecloud_slam/rosbags/plan_raster.h"
 #include "planecloud_slam/rosbags/surface_samples.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kLargestWidth = 1600.0;   // of the plan [px]
@@ -243,4 +243,4 @@ cv::Mat drawMap(const MapSnapshot& map, const MapPicture& picture) {
   return MapPainter(map, picture).paint();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

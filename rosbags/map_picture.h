@@ -10,7 +10,7 @@
 #include "planecloud_slam/rosbags/closure_judge.h"
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// One robot's ways in the frame of the map.
 struct PictureRobot {
@@ -35,4 +35,4 @@ struct MapPicture {
 /// picture's sides, its long side lies. Shows the component with most keyframes.
 [[nodiscard]] cv::Mat drawMap(const MapSnapshot& map, const MapPicture& picture);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

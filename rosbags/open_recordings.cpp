@@ -18,7 +18,7 @@
 #include "planecloud_slam/rosbags/bag_recording.h"
 #endif
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace po = boost::program_options;
@@ -153,4 +153,4 @@ Recordings openRecordings(const std::vector<std::string>& inputs, const Sequence
   return all;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/rosbags/recording.h"
 #include "planecloud_slam/rosbags/sequence_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What an INPUT may be, for --help.
 extern const char* const kInputHelp;
@@ -31,4 +31,4 @@ void addSequenceFlags(boost::program_options::options_description& flags);
     const std::vector<std::string>& inputs, const SequenceOptions& options,
     const std::function<void(const std::string&)>& warn);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

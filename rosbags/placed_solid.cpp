@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kNear = 0.02F;  // [m], nothing nearer is seen
@@ -158,4 +158,4 @@ SurfaceHit PlacedSolid::surfaceAt(const ImageRay& ray, float depth) const {
   return hit;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

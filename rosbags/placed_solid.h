@@ -7,7 +7,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/rosbags/hallway_world.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Pixels computed side by side, also the side of a tile.
 constexpr int kTileSide = 16;
@@ -89,4 +89,4 @@ class PlacedSolid {
   Eigen::Array2i last_pixel_ = Eigen::Array2i::Zero();
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

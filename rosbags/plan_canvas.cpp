@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kOversampling = 2;
@@ -122,4 +122,4 @@ cv::Mat PlanCanvas::picture() const {
   return picture;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

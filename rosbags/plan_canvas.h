@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A colour with shares of red, green, blue in [0, 255].
 struct PlanColor {
@@ -67,4 +67,4 @@ class PlanCanvas {
   cv::Mat image_;  ///< at twice the size
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr PlanColor kInk{38, 44, 52};
@@ -77,4 +77,4 @@ void drawLegend(PlanCanvas& canvas, const PlanLayout& layout,
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/rosbags/plan_canvas.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Title in large letters above the plan, a line of figures below it.
 void drawHeader(PlanCanvas& canvas, const PlanLayout& layout, const std::string& title,
@@ -26,4 +26,4 @@ struct LegendEntry {
 void drawLegend(PlanCanvas& canvas, const PlanLayout& layout,
                 const std::vector<LegendEntry>& entries);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kRasterOversampling = 2.0;
@@ -117,4 +117,4 @@ cv::Mat paintPlan(const std::vector<SurfaceSample>& samples,
   return picture;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/rosbags/plan_canvas.h"
 #include "planecloud_slam/rosbags/surface_samples.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Paints surfaces as a plan from above, 8UC3, blue first, `layout`'s rectangle at twice its
 /// resolution: floor in thin, furniture in stronger tints of the robots' colours, walls dark where
@@ -17,4 +17,4 @@ namespace planecloud_slam {
                                 const std::vector<PlanColor>& robot_colors,
                                 const PlanLayout& layout);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kWidth = 40;  // characters
@@ -47,4 +47,4 @@ void ProgressBar::draw() const {
   std::cerr << std::flush;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// One line on stderr that shows how far a tool has come; silent unless stderr is a terminal.
 class ProgressBar {
@@ -30,4 +30,4 @@ class ProgressBar {
   std::size_t done_ = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/plane_fit/bounded_queue.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Runs a source in a thread of its own, some items ahead of who takes them. The source's
 /// exception is thrown by `next()` once the items before it are taken.
@@ -52,4 +52,4 @@ class ReadAhead {
   std::thread thread_;  // last: runs on the members above
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

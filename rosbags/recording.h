@@ -12,7 +12,7 @@
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/plane_fit/camera.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A pose at a time.
 struct StampedPose {
@@ -43,4 +43,4 @@ class Recording {
   [[nodiscard]] virtual cv::Mat color() const { return {}; }
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -17,7 +17,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -247,4 +247,4 @@ RecoveredBag::~RecoveredBag() {
   std::filesystem::remove(path_, ignored);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

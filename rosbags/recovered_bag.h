@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A whole copy, in a temporary file, of what can be read of a bag without index: one whose
 /// recorder was killed or that was cut in mid-message. The copy is removed with the object.
@@ -30,4 +30,4 @@ class RecoveredBag {
   std::size_t messages_ = 0;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

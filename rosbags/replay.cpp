@@ -12,7 +12,7 @@
 #include "planecloud_slam/rosbags/replay_output.h"
 #include "planecloud_slam/rosbags/replay_run.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace po = boost::program_options;
@@ -108,8 +108,8 @@ int replay(const ParsedFlags& flags) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud
 
 int main(int argc, char** argv) {
-  return planecloud_slam::runTool(planecloud_slam::describe(), argc, argv, planecloud_slam::replay);
+  return planecloud::runTool(planecloud::describe(), argc, argv, planecloud::replay);
 }

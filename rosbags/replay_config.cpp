@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/rosbags/yaml_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::size_t countKnown(const OptionValues& values, const OptionValues& known) {
@@ -26,4 +26,4 @@ void loadConfig(const std::string& path, ReplayConfig& config) {
   }
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/backend_node/backend_node_options.h"
 #include "planecloud_slam/frontend_node/frontend_node_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Options of both sides, as the nodes have them.
 struct ReplayConfig {
@@ -19,4 +19,4 @@ struct ReplayConfig {
 /// std::runtime_error or std::invalid_argument naming the file, the key and what is wrong with it.
 void loadConfig(const std::string& path, ReplayConfig& config);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/rosbags/map_picture.h"
 #include "planecloud_slam/rosbags/trajectory_file.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// `trajectory` moved by `T`.
@@ -124,4 +124,4 @@ void writeReplay(const std::string& folder, const JudgedReplay& replay) {
   if (!report) throw std::runtime_error("cannot write '" + folder + "/report.json'");
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

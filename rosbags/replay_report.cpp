@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/sample_statistics.h"
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -181,4 +181,4 @@ std::string summarise(const JudgedReplay& replay) {
   return text;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/replay_run.h"
 #include "planecloud_slam/rosbags/replay_trajectories.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What ground truth says of a replay.
 struct ReplayJudgement {
@@ -38,4 +38,4 @@ struct JudgedReplay {
 /// The figures a person wants, a few lines.
 [[nodiscard]] std::string summarise(const JudgedReplay& replay);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

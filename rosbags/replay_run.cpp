@@ -9,7 +9,7 @@
 #include "planecloud_slam/rosbags/keyframe_wire_size.h"
 #include "planecloud_slam/rosbags/stopwatch.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::size_t kFramesAhead = 4;  // raw images are large
@@ -112,4 +112,4 @@ ReplayResult runReplay(const std::vector<std::shared_ptr<Recording>>& recordings
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

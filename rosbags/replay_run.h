@@ -13,7 +13,7 @@
 #include "planecloud_slam/rosbags/recording.h"
 #include "planecloud_slam/rosbags/robot_replay.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// How to replay.
 struct ReplayOptions {
@@ -50,4 +50,4 @@ struct ReplayResult {
 [[nodiscard]] ReplayResult runReplay(const std::vector<std::shared_ptr<Recording>>& recordings,
                                      ReplayOptions options);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 void sortByStamp(Trajectory& trajectory) {
@@ -51,4 +51,4 @@ RobotTrajectories extractTrajectories(const RobotLog& log, const MapSnapshot& ma
   return trajectories;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include "planecloud_slam/rosbags/recording.h"
 #include "planecloud_slam/rosbags/replay_run.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What is known of one robot's way. Poses of the optical frame, ordered by stamp.
 struct RobotTrajectories {
@@ -18,4 +18,4 @@ struct RobotTrajectories {
 /// Lost frames, and frames whose keyframe is not in the map, are left out of what is in the map.
 [[nodiscard]] RobotTrajectories extractTrajectories(const RobotLog& log, const MapSnapshot& map);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

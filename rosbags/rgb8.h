@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A colour pixel as in a `rgb8` image: three bytes, no padding.
 struct Rgb8 {
@@ -14,4 +14,4 @@ struct Rgb8 {
 };
 static_assert(sizeof(Rgb8) == 3, "rows of Rgb8 are rows of a rgb8 image");
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/rosbags/seeded_random.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kStep = 1.0 / RobotPath::kStepsPerSecond;  // [s]
@@ -226,4 +226,4 @@ Eigen::Isometry3d toTransform(const BaseState& state) {
   return transform;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The drives that the built-in world offers.
 enum class DriveKind {
@@ -52,4 +52,4 @@ class RobotPath {
 /// A pose on the floor as a transform, z up.
 [[nodiscard]] Eigen::Isometry3d toTransform(const BaseState& state);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

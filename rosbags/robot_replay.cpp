@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/read_ahead.h"
 #include "planecloud_slam/rosbags/stopwatch.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::uint64_t nanoseconds(double stamp) {
@@ -116,4 +116,4 @@ RobotReplay& RobotReplay::operator=(RobotReplay&&) noexcept = default;
 
 std::optional<ReplayedFrame> RobotReplay::next() { return impl_->next(); }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/frame_stream.h"
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What the frontends of a replay are told.
 struct RobotReplayOptions {
@@ -40,4 +40,4 @@ class RobotReplay {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// `share` in [0, 1] of the way through `sorted`, linear between neighbours.
@@ -43,4 +43,4 @@ SampleStatistics summarise(std::vector<double> samples) {
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Figures of a list of numbers; all NaN when it is empty.
 struct SampleStatistics {
@@ -21,4 +21,4 @@ struct SampleStatistics {
 
 [[nodiscard]] SampleStatistics summarise(std::vector<double> samples);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

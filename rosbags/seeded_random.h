@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The finaliser of splitmix64: every bit of the result depends on every bit of `bits`.
 [[nodiscard]] constexpr std::uint64_t mixBits(std::uint64_t bits) {
@@ -54,4 +54,4 @@ class SeededRandom {
   std::uint64_t state_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

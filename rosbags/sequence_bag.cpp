@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/rosbags/bag_writer.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 void writeSequenceBag(const SequenceFolder& folder, const std::string& path,
                       const std::function<void()>& progress) {
@@ -22,4 +22,4 @@ void writeSequenceBag(const SequenceFolder& folder, const std::string& path,
   bag.close();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/rosbags/sequence_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Writes a folder in the TUM layout as a bag under `rawTopics`: the pairs of associations.txt,
 /// depth as 32FC1 in metres (nothing is lost), each image with its own stamp, `ground_truth` where
@@ -16,4 +16,4 @@ namespace planecloud_slam {
 void writeSequenceBag(const SequenceFolder& folder, const std::string& path,
                       const std::function<void()>& progress = {});
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -17,7 +17,7 @@
 #include "planecloud_slam/rosbags/trajectory_file.h"
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +175,4 @@ Image<std::uint8_t> greyFromColor(const cv::Mat& color) {
   return image;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

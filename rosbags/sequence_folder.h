@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What the command line says of a sequence; goes before its camera.yaml.
 struct SequenceOptions {
@@ -58,4 +58,4 @@ struct SequenceImages {
 /// Grey levels as the tracker sees them (ITU-R BT.601) of an 8UC3 image, blue first.
 [[nodiscard]] Image<std::uint8_t> greyFromColor(const cv::Mat& color);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

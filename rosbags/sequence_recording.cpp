@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 SequenceRecording::SequenceRecording(SequenceFolder folder, std::string robot)
     : folder_(std::move(folder)), robot_(std::move(robot)) {}
@@ -21,4 +21,4 @@ std::optional<RgbdFrame> SequenceRecording::next() {
   return frame;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

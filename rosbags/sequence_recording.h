@@ -10,7 +10,7 @@
 #include "planecloud_slam/rosbags/recording.h"
 #include "planecloud_slam/rosbags/sequence_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A folder in the TUM layout as a recording. Images are read when asked for.
 class SequenceRecording : public Recording {
@@ -32,4 +32,4 @@ class SequenceRecording : public Recording {
   cv::Mat color_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

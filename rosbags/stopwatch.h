@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Wall time since it was made.
 class Stopwatch {
@@ -19,4 +19,4 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include <complex>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kMostSamplesPerSide = 64;
@@ -108,4 +108,4 @@ float findFloorHeight(const std::vector<SurfaceSample>& samples) {
   return base + kHeightStep * (static_cast<float>(floor - area.begin()) + 0.5F);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A small piece of a mapped surface.
 struct SurfaceSample {
@@ -38,4 +38,4 @@ struct SurfaceSampling {
 /// Height of the lowest large horizontal surface that faces up [m]; the lowest sample without one.
 [[nodiscard]] float findFloorHeight(const std::vector<SurfaceSample>& samples);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kSameStamp = 1e-5;         // [s]: files are written to the microsecond
@@ -187,4 +187,4 @@ double separatelyAlignedError(const std::vector<TrajectoryPair>& trajectories) {
   return absolute.value();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Ground truth is not interpolated over longer gaps than this [s].
 constexpr double kLongestGroundTruthGap = 0.05;
@@ -59,4 +59,4 @@ struct TrajectoryErrors {
 /// whose frames are unrelated [m].
 [[nodiscard]] double separatelyAlignedError(const std::vector<TrajectoryPair>& trajectories);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 // Benchmarks print four decimals, so a norm may be off by some 1e-4; more is another format.
@@ -73,4 +73,4 @@ void writeTrajectory(const std::string& path, const Trajectory& trajectory) {
   if (!file) throw std::runtime_error("cannot write trajectory '" + path + "'");
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/rosbags/recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Reads a trajectory in the TUM format, `stamp tx ty tz qx qy qz qw` a line [s, m, unit
 /// quaternion], lines that start with # ignored. Ordered by stamp. Throws std::runtime_error
@@ -17,4 +17,4 @@ namespace planecloud_slam {
 /// Throws std::runtime_error when the file cannot be written.
 void writeTrajectory(const std::string& path, const Trajectory& trajectory);
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// The program was called wrongly: the text says what is wrong and the cure. Tools print it and
 /// exit with 2.
@@ -13,4 +13,4 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

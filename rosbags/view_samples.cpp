@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kStep = 20;                    // [px]
@@ -61,4 +61,4 @@ double ViewSamples::shareSeenBy(const ViewSamples& other,
   return static_cast<double>(seen) / static_cast<double>(points_.size());
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// What a keyframe sees, at one pixel in 20 x 20: enough to say how much two views share.
 class ViewSamples {
@@ -29,4 +29,4 @@ class ViewSamples {
   std::vector<Eigen::Vector3d> points_;  ///< of the samples with depth, optical frame [m]
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::string placeOf(const std::string& path, const YAML::Node& node) {
@@ -74,4 +74,4 @@ void refuseUnknownOptions(const std::string& path, const OptionValues& unknown,
                               nearestKey(key, known) + "'");
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

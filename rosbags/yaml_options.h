@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/option_values.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Reads a YAML file into options by key: nested maps become `outer/inner`. Throws
 /// std::runtime_error naming file and line for what is not YAML, a list or a repeated key.
@@ -31,4 +31,4 @@ void loadYamlOptions(const std::string& path, Options& options) {
   options.check();
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

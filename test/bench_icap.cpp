@@ -22,7 +22,7 @@
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kPairs = 60;
@@ -149,6 +149,6 @@ int runAll(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud
 
-int main(int argc, char** argv) { return planecloud_slam::runAll(argc, argv); }
+int main(int argc, char** argv) { return planecloud::runAll(argc, argv); }

@@ -18,7 +18,7 @@
 /// Fit, encode and decode on recorded depth: milliseconds, planes, errors and bytes.
 ///
 ///     bench_plane_fit [FRAMES [REPETITIONS]]
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -128,7 +128,7 @@ int run(std::size_t frames, int repetitions) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud
 
 int main(int argc, char** argv) {
   const int frames = argc > 1 ? std::atoi(argv[1]) : 20;
@@ -137,5 +137,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: bench_plane_fit [FRAMES [REPETITIONS]]\n");
     return 2;
   }
-  return planecloud_slam::run(static_cast<std::size_t>(frames), repetitions);
+  return planecloud::run(static_cast<std::size_t>(frames), repetitions);
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Fails unless `action` throws an `Error` whose text has each of `parts`.
 template <typename Error, typename Action>
@@ -24,4 +24,4 @@ void expectError(Action&& action, const std::vector<std::string>& parts) {
   ADD_FAILURE() << "no error of the expected type was thrown";
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

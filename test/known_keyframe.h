@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/planecloud_msgs/conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 constexpr const char* kKnownFrame = "camera_rgb_optical_frame";
 
@@ -53,8 +53,8 @@ std::vector<std::uint8_t> serialized(const Message& message) {
 }
 
 /// The keyframe message in `bytes`; throws what ros::serialization throws.
-inline KeyframeMessage deserialized(std::vector<std::uint8_t> bytes) {
-  KeyframeMessage message;
+inline planecloud_slam::PlaneCloudKeyframe deserialized(std::vector<std::uint8_t> bytes) {
+  planecloud_slam::PlaneCloudKeyframe message;
   ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   ros::serialization::deserialize(stream, message);
   return message;
@@ -91,4 +91,4 @@ inline void expectEqual(const Keyframe& a, const Keyframe& b) {
   EXPECT_EQ(a.texture.bytes, b.texture.bytes);
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 
 /// Small depth images with known planes for the unit tests of plane_fit.
-namespace planecloud_slam {
+namespace planecloud {
 
 inline CameraIntrinsics testCamera(int width = 640, int height = 480) {
   return {width, height, 525.0, 520.0, 0.5 * width - 1.3, 0.5 * height + 0.7, {}};
@@ -81,4 +81,4 @@ inline Image<std::uint16_t> toMillimetres(const Image<float>& depth) {
   return result;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

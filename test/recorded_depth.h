@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 
 /// Recorded depth images for tests and benchmarks that look at real data where there is some.
-namespace planecloud_slam {
+namespace planecloud {
 
 /// Depth images [m] of one TUM RGB-D sequence and their camera.
 struct RecordedDepth {
@@ -57,4 +57,4 @@ inline RecordedDepth loadRecordedDepth(const std::string& sequence, std::size_t 
   return recorded;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A camera of 160 x 120 pixels.
 inline CameraIntrinsics smallCamera() {
@@ -68,4 +68,4 @@ inline void addKeyframe(MapSnapshot& map, const KeyframeId& id, double stamp,
   map.components = 1;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

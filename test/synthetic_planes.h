@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A rectangle in the world, seen from both sides.
 struct Face {
@@ -186,4 +186,4 @@ inline Eigen::Isometry3d randomMotion(double distance, double angle, std::mt1993
   return motion;
 }
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

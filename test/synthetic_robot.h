@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A hall of 11 m x 8 m around a block, furnished so that no two places are alike; z up.
 inline SyntheticPlanes makeHall() {
@@ -115,4 +115,4 @@ class SyntheticRobot {
   Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 
 /// A textured box room with a pillar, ray-cast with exact poses: small and quick enough for tests.
-namespace planecloud_slam::synthetic {
+namespace planecloud::synthetic {
 
 /// 320 x 240 pixels, 58 degrees wide.
 inline CameraIntrinsics camera() {
@@ -100,4 +100,4 @@ inline Eigen::Isometry3d pose(double x, double y, double z, double rx = 0.0, dou
   return T;
 }
 
-}  // namespace planecloud_slam::synthetic
+}  // namespace planecloud::synthetic

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planecloud_slam {
+namespace planecloud {
 
 /// A new, empty folder that is removed with its contents.
 class TemporaryFolder {
@@ -39,4 +39,4 @@ class TemporaryFolder {
   std::string path_;
 };
 
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/backend_node/ack_tracker.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 KeyframeId id(std::uint32_t number, std::uint64_t session = 7) {
@@ -75,4 +75,4 @@ TEST(AckTracker, TellsNoMoreGapsThanTheMessageShouldCarry) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

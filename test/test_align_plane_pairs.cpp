@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/se3.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// `pi' = T^-T pi`, the paper's rule for planes, as a 4x4 product.
@@ -109,4 +109,4 @@ TEST(AlignPlanePairs, RefusesWrongUse) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/plane_fit/appearance_descriptor.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -181,4 +181,4 @@ TEST(AppearanceDescriptor, KeepsTheMeaningOfItsVersion) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/rosbags/astra_sensor_model.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kFocalBaseline = 570.0 * 0.075;  // [px m]
@@ -179,4 +179,4 @@ TEST(AstraSensorModel, NoiseBelongsToSeedAndFrame) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -12,7 +12,7 @@
 #include "planecloud_slam/backend_node/backend.h"
 #include "synthetic_robot.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Truth = std::map<KeyframeId, Eigen::Isometry3d>;
@@ -231,4 +231,4 @@ TEST(Backend, RefusesOptionsOutOfRangeByName) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

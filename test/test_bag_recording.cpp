@@ -14,7 +14,7 @@
 #include "planecloud_slam/rosbags/hallway_bag.h"
 #include "planecloud_slam/rosbags/sequence_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace fs = std::filesystem;
@@ -282,4 +282,4 @@ TEST(FindRobots, PrefersRectifiedColourAndRegisteredDepth) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

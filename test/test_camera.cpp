@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/plane_fit/camera.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 CameraIntrinsics kinect() { return {640, 480, 517.3, 516.5, 318.6, 255.3, {}}; }
@@ -75,4 +75,4 @@ TEST(Camera, RectifiedHasNoDistortion) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

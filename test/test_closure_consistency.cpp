@@ -8,7 +8,7 @@
 #include "planecloud_slam/backend_node/closure_consistency.h"
 #include "planecloud_slam/backend_node/consistent_group.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 KeyframeId idOf(const std::string& robot, int number) {
@@ -159,4 +159,4 @@ TEST(LargestConsistentGroup, FindsTheClique) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include "planecloud_slam/rosbags/closure_judge.h"
 #include "room_map.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -136,4 +136,4 @@ TEST_F(ClosureJudgementTest, WithoutGroundTruthNothingIsJudged) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

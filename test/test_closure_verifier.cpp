@@ -9,7 +9,7 @@
 #include "planecloud_slam/backend_node/view_overlap.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kNoise = 1.5e-3;  // of a pixel's inverse depth [1/m]
@@ -95,4 +95,4 @@ TEST(MutualViewOverlap, IsOneForTheSameViewAndZeroBackToBack) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include "planecloud_slam/rosbags/command_line.h"
 #include "planecloud_slam/rosbags/usage_error.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace po = boost::program_options;
@@ -82,4 +82,4 @@ TEST(CommandLine, ChecksRangesOfFlags) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/frontend_node/frontend_node_options.h"
 #include "planecloud_slam/rosbags/yaml_options.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 template <typename Options>
@@ -55,4 +55,4 @@ TEST(Configuration, PutsTheRobotIntoTheNameOfItsFrame) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

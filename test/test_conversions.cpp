@@ -10,17 +10,19 @@
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 #include "planecloud_slam/planecloud_msgs/conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-KeyframeMessage knownMessage() { return toMessage(knownKeyframe(), kKnownFrame); }
+planecloud_slam::PlaneCloudKeyframe knownMessage() {
+  return toMessage(knownKeyframe(), kKnownFrame);
+}
 
 /// `change` must make the known message one that is refused with a text that has `parts`.
-void expectRefused(const std::function<void(KeyframeMessage&)>& change,
+void expectRefused(const std::function<void(planecloud_slam::PlaneCloudKeyframe&)>& change,
                    const std::vector<std::string>& parts) {
-  KeyframeMessage message = knownMessage();
+  planecloud_slam::PlaneCloudKeyframe message = knownMessage();
   change(message);
   expectError<MessageError>([&] { static_cast<void>(fromMessage(message)); }, parts);
 }
@@ -51,14 +53,14 @@ TEST(Conversions, GiveHalfTurnsAsTravelled) {
 }
 
 TEST(Conversions, PutStampAndOpticalFrameIntoThePlaneCloudHeader) {
-  const KeyframeMessage message = knownMessage();
+  const planecloud_slam::PlaneCloudKeyframe message = knownMessage();
   EXPECT_EQ(message.plane_cloud.header.frame_id, kKnownFrame);
   EXPECT_EQ(message.plane_cloud.header.stamp.sec, 1305031102U);
   EXPECT_NEAR(message.plane_cloud.header.stamp.nsec, 160407000, 240);  // one step of a double
 }
 
 TEST(Conversions, NameTheSessionOfAnotherKeyframeOnlyWhereItDiffers) {
-  const KeyframeMessage message = knownMessage();
+  const planecloud_slam::PlaneCloudKeyframe message = knownMessage();
   EXPECT_TRUE(message.edges[0].other.session.empty());
   ASSERT_EQ(message.edges[1].other.session.size(), 1U);
   EXPECT_EQ(message.edges[1].other.session[0].robot, "robot2");
@@ -134,10 +136,10 @@ TEST(Conversions, RefuseReferencesToTheKeyframeItselfAndBrokenStamps) {
 }
 
 TEST(Conversions, IgnoreStopFlagsOfLaterVersions) {
-  KeyframeMessage message = knownMessage();
+  planecloud_slam::PlaneCloudKeyframe message = knownMessage();
   message.plane_cloud.stopped_by |= 0xF0;
   expectEqual(fromMessage(message), asTravelled(knownKeyframe()));
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

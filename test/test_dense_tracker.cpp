@@ -7,7 +7,7 @@
 #include "planecloud_slam/frontend_node/dense_tracker.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using synthetic::pose;
@@ -158,4 +158,4 @@ TEST_F(DenseTrackerTest, RefusesForeignPyramidsAndMissingStarts) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/rosbags/frame_stream.h"
 #include "planecloud_slam/rosbags/read_ahead.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 FrameStream stampsOf(std::size_t robot, std::vector<double> stamps) {
@@ -73,4 +73,4 @@ TEST(ReadAhead, CanBeLeftBeforeTheEnd) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

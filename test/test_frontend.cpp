@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using synthetic::pose;
@@ -201,4 +201,4 @@ TEST(KeyframeCompressor, FitsEncodesAndDescribesAKeyframe) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -15,7 +15,7 @@
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 #include "planecloud_slam/rosbags/hallway_bag.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A bag of two robots, written once for all tests.
@@ -89,4 +89,4 @@ TEST_F(HallwayBag, TopicsAreThoseOfOpenni2LaunchInEachNamespace) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/rosbags/hallway_recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 HallwayOptions brief(double duration) {
@@ -140,4 +140,4 @@ TEST(HallwayRecording, NamesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

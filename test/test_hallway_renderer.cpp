@@ -10,7 +10,7 @@
 #include "planecloud_slam/rosbags/hallway_recording.h"
 #include "planecloud_slam/rosbags/hallway_renderer.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 CameraIntrinsics smallCamera() {
@@ -129,4 +129,4 @@ TEST(HallwayRenderer, RefusesLensDistortion) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/rosbags/hallway_surfaces.h"
 #include "planecloud_slam/rosbags/hallway_texture.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// One texel black, the next white.
@@ -60,4 +60,4 @@ TEST(HallwaySurfaces, PostersOfDifferentSeedsDiffer) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/hallway_renderer.h"
 #include "planecloud_slam/rosbags/hallway_world.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A camera in the middle of a hallway that looks straight at a wall.
@@ -99,4 +99,4 @@ TEST(HallwayWorld, TheSeedChoosesFurnitureButNotWalls) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

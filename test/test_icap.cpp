@@ -9,7 +9,7 @@
 #include "planecloud_slam/icap/icap.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kNoise = 1.6e-3;  // inverse depth of one pixel, Kinect class [1/m]
@@ -273,4 +273,4 @@ TEST(Icap, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/icap/icap_options.h"
 #include "planecloud_slam/plane_fit/option_values.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 TEST(IcapOptions, HasDefaultsInRange) { EXPECT_NO_THROW(IcapOptions().check()); }
@@ -46,4 +46,4 @@ TEST(IcapOptions, ReadsBackTheNamesOfTheForms) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

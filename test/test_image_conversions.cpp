@@ -11,7 +11,7 @@
 #include "expect_error.h"
 #include "planecloud_slam/planecloud_msgs/image_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A `width` x 2 image whose rows hold `numbers` and then `padding` bytes.
@@ -165,4 +165,4 @@ TEST(ImageConversions, RefuseCamerasThatCannotBeUsedNamingTheCure) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 
 #include "planecloud_slam/frontend_node/input_monitor.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST(InputMonitor, NoticesThatABagBeganAgainOnce) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

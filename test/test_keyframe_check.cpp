@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -76,4 +76,4 @@ TEST(KeyframeCheck, RefusesEachFaultWithItsReason) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

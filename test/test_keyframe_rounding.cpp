@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 Keyframe someKeyframe() {
@@ -76,4 +76,4 @@ TEST(KeyframeRounding, SaturatesStatisticsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/frontend_node/keyframe_selector.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using synthetic::pose;
@@ -58,4 +58,4 @@ TEST(KeyframeSelector, NamesTheOptionOutOfRange) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

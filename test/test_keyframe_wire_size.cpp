@@ -6,7 +6,7 @@
 #include "planecloud_slam/planecloud_msgs/conversions.h"
 #include "planecloud_slam/rosbags/keyframe_wire_size.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::size_t messageSize(const Keyframe& keyframe) {
@@ -43,4 +43,4 @@ TEST(KeyframeWireSize, AllButPlanesAndDescriptorStaysUnder250Bytes) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

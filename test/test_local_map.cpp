@@ -9,7 +9,7 @@
 #include "planecloud_slam/frontend_node/local_map.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using synthetic::pose;
@@ -103,4 +103,4 @@ TEST(LocalMap, RefusesDistortion) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/backend_node/loop_closure_detector.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A map of keyframes with exact edges in one room.
@@ -93,4 +93,4 @@ TEST_F(LoopClosureDetectorTest, ProposesNoMoreThanItMay) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

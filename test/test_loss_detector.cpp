@@ -7,7 +7,7 @@
 #include "planecloud_slam/frontend_node/loss_detector.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using synthetic::pose;
@@ -73,4 +73,4 @@ TEST(LossDetector, ImplausibleMotionsAndEntropiesAreNotBelieved) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -18,7 +18,7 @@
 #include "synthetic_planes.h"
 #include "temporary_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 MapSnapshot::Node nodeOf(const std::string& robot, int number, const Eigen::Isometry3d& T) {
@@ -204,4 +204,4 @@ TEST(ExportMap, SaysWhichFileItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

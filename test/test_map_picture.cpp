@@ -6,7 +6,7 @@
 #include "planecloud_slam/rosbags/surface_samples.h"
 #include "room_map.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// A robot that looks at the four walls of a room of 4 m x 4 m, turned by `tilt` in the map.
@@ -112,4 +112,4 @@ TEST(SurfaceSamples, CoverTheSurfaceTheyStandFor) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/depth_traits.h"
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 struct Case {
@@ -153,4 +153,4 @@ TEST(MomentPyramid, NeedsACamera) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/plane_fit/noise_model.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 TEST(DepthNoiseModel, GrowsWithTheSquareOfDepth) {
@@ -30,4 +30,4 @@ TEST(DepthNoiseModel, RefusesValuesOutOfRangeByName) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

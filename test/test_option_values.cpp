@@ -4,7 +4,7 @@
 
 #include "planecloud_slam/plane_fit/option_values.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 enum class Fruit { kApple, kPear };
@@ -87,4 +87,4 @@ TEST(OptionValues, RefuseTextsOfAnotherType) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

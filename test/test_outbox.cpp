@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/frontend_node/outbox.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr std::uint64_t kSession = 7;
@@ -277,4 +277,4 @@ TEST(Outbox, LosesNothingOverASlowLinkThatBreaksOnABackendThatRestarts) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 #include "planecloud_slam/plane_fit/quadtree_grid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 const std::vector<QuadtreeLayout> kLayouts = {{64, 64, 4}, {80, 60, 2}, {24, 24, 2}, {40, 40, 3}};
@@ -213,4 +213,4 @@ TEST(PlaneCloudCodec, OptionsNameKeyValueAndRange) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -15,7 +15,7 @@
 
 /// The decoder faces the network: whatever the bytes, it throws PlaneCloudDecodeError or returns a
 /// cloud that could have been encoded.
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 EncodedPlaneCloud sample(PlaneCloudEncoding encoding) {
@@ -183,4 +183,4 @@ TEST(PlaneCloudDecoder, SaysWhatToDoAboutAForeignVersion) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -15,7 +15,7 @@
 /// `fixtures/plane_cloud_compact_v1.bin` is a COMPACT stream of version 1 as it was first released
 /// (the noisy corridor of planar_scene.h, distorted camera). Streams recorded then must decode to
 /// the same bits for ever, on every machine: never write the file anew, add a version.
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 EncodedPlaneCloud readFixture() {
@@ -72,4 +72,4 @@ TEST(PlaneCloudFixture, OfVersion1IsWhatTheEncoderWrites) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/plane_fit/eigen_plane_fit.h"
 #include "planecloud_slam/plane_fit/plane_regression.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kPixel = 1.0 / 525.0;  // a pixel's tangent
@@ -86,4 +86,4 @@ TEST(PlaneRegression, OfMergedMomentsIsThatOfAllPixels) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

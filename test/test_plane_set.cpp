@@ -9,7 +9,7 @@
 #include "planecloud_slam/icap/plane_set.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 using Level = PlaneSet::Level;
@@ -116,4 +116,4 @@ TEST(PlaneSet, RefusesTilesOutsideTheImage) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/se3.h"
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 Eigen::Isometry3d somePose() {
@@ -37,4 +37,4 @@ TEST(PoseConversions, RefuseWhatIsNoPose) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 
 #include "planecloud_slam/backend_node/pose_graph.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 KeyframeId idOf(int number, const std::string& robot = "robot1") {
@@ -220,4 +220,4 @@ TEST(PoseGraph, RefusesEdgesWithoutTheirKeyframes) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

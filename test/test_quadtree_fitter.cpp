@@ -13,7 +13,7 @@
 #include "planecloud_slam/plane_fit/coding_order.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::shared_ptr<const Camera> makeCamera(const CameraIntrinsics& intrinsics) {
@@ -308,4 +308,4 @@ TEST(QuadtreeFitterOptions, NameKeyValueAndRange) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

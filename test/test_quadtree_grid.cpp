@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/coding_order.h"
 #include "planecloud_slam/plane_fit/quadtree_grid.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// Sides of the first node of each level.
@@ -116,4 +116,4 @@ TEST(CodingOrder, RefusesStrangersAndOverlaps) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/plane_fit/integer_model.h"
 #include "planecloud_slam/plane_fit/range_coder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 TEST(RangeCoder, ReturnsEveryBitOfSkewedAndRawSources) {
@@ -99,4 +99,4 @@ TEST(IntegerModel, ReturnsEveryInteger) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 PlaneCloud oneTile(const CameraIntrinsics& camera) {
@@ -99,4 +99,4 @@ TEST(Reconstruction, WantsTheCloudsOwnCamera) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -10,7 +10,7 @@
 #include "recorded_depth.h"
 
 /// Fitting and coding on recorded depth images, where they are installed.
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 class RecordedPlaneClouds : public testing::TestWithParam<std::string> {
@@ -55,4 +55,4 @@ INSTANTIATE_TEST_SUITE_P(Sequences, RecordedPlaneClouds,
                          testing::Values("tum_fr1_xyz_first_300", "tum_fr3_cabinet_58"));
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -7,7 +7,7 @@
 #include "planecloud_slam/frontend_node/rectifier.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 CameraIntrinsics distortedCamera() {
@@ -61,4 +61,4 @@ TEST(Rectifier, ItsCameraHasNoDistortion) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

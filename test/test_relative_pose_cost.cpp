@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/backend_node/relative_pose_cost.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 Vector6d randomTwist(std::mt19937& generator, double translation, double rotation) {
@@ -116,4 +116,4 @@ TEST(RelativePoseCost, DerivativesEqualDifferencesForSmallAndLargeErrors) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,7 +9,7 @@
 #include "planecloud_slam/frontend_node/rgbd_pyramid.h"
 #include "synthetic_scene.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 TEST(RgbdPyramid, PixelCentresMoveByHalfAPixel) {
@@ -78,4 +78,4 @@ TEST(RgbdPyramid, RefusesDistortionAndTooManyLevels) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

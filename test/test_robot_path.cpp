@@ -9,7 +9,7 @@
 #include "planecloud_slam/rosbags/hallway_world.h"
 #include "planecloud_slam/rosbags/robot_path.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kStep = 1.0 / RobotPath::kStepsPerSecond;
@@ -97,4 +97,4 @@ TEST(WheelOdometry, DriftsByOneToTwoPercentOfTheDistance) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 
 #include "planecloud_slam/frontend_node/robust_weight.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 struct Samples {
@@ -75,4 +75,4 @@ TEST(RobustWeight, UnseenPointsDoNotCount) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

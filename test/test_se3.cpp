@@ -7,7 +7,7 @@
 
 #include "planecloud_slam/plane_fit/se3.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 Vector6d randomTwist(std::mt19937& random, double translation, double rotation) {
@@ -68,4 +68,4 @@ TEST(Se3, InvertedInformationGivesTheSameSquaredError) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -13,7 +13,7 @@
 #include "planecloud_slam/rosbags/sequence_bag.h"
 #include "planecloud_slam/rosbags/sequence_recording.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ TEST_F(SequenceBag, CarriesTheGroundTruth) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -11,7 +11,7 @@
 #include "planecloud_slam/rosbags/usage_error.h"
 #include "temporary_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kWidth = 32;
@@ -179,4 +179,4 @@ TEST(CameraFlag, ReadsFourToNineNumbers) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 
 #include "planecloud_slam/backend_node/session_ledger.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 Keyframe keyframeOf(std::uint64_t session, std::uint32_t number, double stamp) {
@@ -59,4 +59,4 @@ TEST(SessionLedger, KnowsRobotsApart) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

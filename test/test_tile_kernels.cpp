@@ -10,7 +10,7 @@
 
 #include "planecloud_slam/plane_fit/tile_kernels.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr int kRows = 17;
@@ -147,4 +147,4 @@ TEST(TileKernels, MeasureResidualsAlike) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

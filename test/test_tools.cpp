@@ -13,7 +13,7 @@
 
 #include "temporary_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 /// What a program did.
@@ -194,4 +194,4 @@ TEST_F(ToolsTest, CompressWritesItsKeysPicturesAndTable) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -8,7 +8,7 @@
 #include "planecloud_slam/plane_fit/se3.h"
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kRate = 100.0;  // [Hz]
@@ -153,4 +153,4 @@ TEST(TrajectoryEvaluation, WithoutAMatchThereAreNoFigures) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

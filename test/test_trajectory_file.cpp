@@ -7,7 +7,7 @@
 #include "planecloud_slam/rosbags/trajectory_file.h"
 #include "temporary_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 TEST(TrajectoryFile, ReadsBackWhatItWrote) {
@@ -57,4 +57,4 @@ TEST(TrajectoryFile, SaysWhichFileIsMissing) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

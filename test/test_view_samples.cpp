@@ -5,7 +5,7 @@
 #include "planecloud_slam/rosbags/view_samples.h"
 #include "room_map.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 double sharedBy(const Eigen::Isometry3d& T_a_b) {
@@ -45,4 +45,4 @@ TEST(ViewSamples, AnEmptyCloudSharesNothing) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -5,7 +5,7 @@
 #include "planecloud_slam/icap/visibility.h"
 #include "synthetic_planes.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 constexpr double kNoise = 1.6e-3;  // inverse depth of one pixel, Kinect class [1/m]
@@ -80,4 +80,4 @@ TEST(Visibility, HasNoOpinionWhereTheTargetHasNoTile) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <planecloud_slam/ExportMap.h>
+#include <planecloud_slam/KeyframeAck.h>
 #include <ros/message_traits.h>
 #include <ros/service_traits.h>
 #include <sys/resource.h>
@@ -16,7 +17,7 @@
 #include "known_keyframe.h"
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 std::vector<std::uint8_t> fixture(const std::string& name) {
@@ -32,7 +33,7 @@ std::size_t overhead(std::size_t edges) {
   keyframe.planes.camera.distortion = {};
   keyframe.edges.resize(1);
   keyframe.edges.resize(edges, keyframe.edges[0]);
-  const KeyframeMessage message = toMessage(keyframe, kKnownFrame);
+  const planecloud_slam::PlaneCloudKeyframe message = toMessage(keyframe, kKnownFrame);
   const std::size_t payload = serialized(message.plane_cloud.data).size() +
                               serialized(message.descriptor).size() +
                               serialized(message.texture).size() + sizeof(message.texture_format);
@@ -66,7 +67,7 @@ void limitMemory() {
 TEST(WireFormat, ReadsTheFirstVersion) {
   const std::vector<std::uint8_t> bytes = fixture("keyframe_v1.bin");
   ASSERT_FALSE(bytes.empty());
-  const KeyframeMessage message = deserialized(bytes);
+  const planecloud_slam::PlaneCloudKeyframe message = deserialized(bytes);
   EXPECT_EQ(message.plane_cloud.header.frame_id, kKnownFrame);
   const Keyframe read = fromMessage(message);
   Keyframe known = asTravelled(knownKeyframe());
@@ -85,11 +86,12 @@ TEST(WireFormat, ReadsTheFirstVersion) {
 
 TEST(WireFormat, IsTheOneOfEveryRecordedBag) {
   using ros::message_traits::md5sum;
-  EXPECT_STREQ(md5sum<KeyframeMessage>(), "48547f56a41b113a31382613599408a9");
-  EXPECT_STREQ(md5sum<PlaneCloudMessage>(), "1ed0ba669f7f939716e8058ccc570ca0");
-  EXPECT_STREQ(md5sum<RelativePoseEdgeMessage>(), "ce1bb284d0dab7f3ef3cba0f3977fc7b");
-  EXPECT_STREQ(md5sum<KeyframeAckMessage>(), "0f7e2d8632ca44afc638d0106f72fac9");
-  EXPECT_STREQ(ros::service_traits::md5sum<ExportMap>(), "628205d714ef1496481bba93184f04c3");
+  EXPECT_STREQ(md5sum<planecloud_slam::PlaneCloudKeyframe>(), "48547f56a41b113a31382613599408a9");
+  EXPECT_STREQ(md5sum<planecloud_slam::PlaneCloud>(), "1ed0ba669f7f939716e8058ccc570ca0");
+  EXPECT_STREQ(md5sum<planecloud_slam::RelativePoseEdge>(), "ce1bb284d0dab7f3ef3cba0f3977fc7b");
+  EXPECT_STREQ(md5sum<planecloud_slam::KeyframeAck>(), "0f7e2d8632ca44afc638d0106f72fac9");
+  EXPECT_STREQ(ros::service_traits::md5sum<planecloud_slam::ExportMap>(),
+               "628205d714ef1496481bba93184f04c3");
 }
 
 TEST(WireFormat, CostsUnder250BytesAndUnder128ForEachFurtherEdge) {
@@ -136,4 +138,4 @@ TEST(WireFormat, IsReadOrRefusedWhateverBytesAreOverwritten) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -6,7 +6,7 @@
 #include "planecloud_slam/rosbags/yaml_options.h"
 #include "temporary_folder.h"
 
-namespace planecloud_slam {
+namespace planecloud {
 namespace {
 
 struct CupOptions {
@@ -87,4 +87,4 @@ TEST_F(YamlOptionsTest, NamesTheLineOfWhatIsNotAMapOfValues) {
 }
 
 }  // namespace
-}  // namespace planecloud_slam
+}  // namespace planecloud

@@ -9,12 +9,13 @@
 
 /// Sends a plane cloud through encoder, message and decoder; prints how many planes arrived.
 int main() {
-  using namespace planecloud_slam;
+  using namespace planecloud;
   PlaneCloud cloud;
   cloud.camera = {640, 480, 525.0, 525.0, 319.5, 239.5, {}};
   cloud.tiles.push_back({{0, 0, 64, 64}, {0.0F, 0.0F, 0.5F}});
   IcapOptions().check();
-  const PlaneCloudMessage message = toMessage(encode(cloud, CodecOptions()), 1.0, "camera");
+  const planecloud_slam::PlaneCloud message =
+      toMessage(encode(cloud, CodecOptions()), 1.0, "camera");
   const PlaneCloud received = decode(fromMessage(message));
   std::cout << received.tiles.size() << " plane received\n";
   return received.tiles.size() == 1 ? 0 : 1;
