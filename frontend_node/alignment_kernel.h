@@ -24,13 +24,12 @@ struct Brightness {
   double offset = 0.0;  ///< [grey levels]
 };
 
-/// Residuals of every reference point and the room to compute them; keeps its memory.
+/// Residuals of every reference point; keeps its memory.
 struct Residuals {
-  std::vector<float> x, y, predicted_q;  ///< projected pixel and inverse depth of the warped point
-  std::vector<float> grey, q, seen;      ///< see `ResidualView`; padded like the points
-  std::size_t in_image = 0;              ///< points that project into the image, on valid depth
-  std::size_t agreeing = 0;              ///< of these: depth as predicted to 5 %
-  std::size_t seen_count = 0;            ///< of these: depth as predicted to 20 %, not occluded
+  std::vector<float> grey, q, seen;  ///< see `ResidualView`; padded like the points
+  std::size_t in_image = 0;          ///< points that project into the image, on valid depth
+  std::size_t agreeing = 0;          ///< of these: depth as predicted to 5 %
+  std::size_t seen_count = 0;        ///< of these: depth as predicted to 20 %, not occluded
 
   [[nodiscard]] ResidualView view() const { return {grey.data(), q.data(), seen.data(), q.size()}; }
 };
@@ -70,5 +69,46 @@ struct BlockScatter {
 [[nodiscard]] BlockScatter accumulateBlockScatter(const ReferencePoints& points,
                                                   const ResidualView& residuals,
                                                   const ResidualScale& scale, double nu);
+
+/// A warp and brightness in the precision of the loops.
+struct WarpF {
+  Eigen::Matrix3f R = Eigen::Matrix3f::Identity();  ///< of T_current_reference
+  Eigen::Vector3f t = Eigen::Vector3f::Zero();      ///< of T_current_reference [m]
+  float inverse_gain = 1.0F;
+  float offset = 0.0F;  ///< [grey levels]
+};
+
+/// A scale as the loops use it.
+struct Whitening {
+  float inverse_grey;
+  float inverse_q;
+  float slope;
+  float nu;  ///< degrees of freedom of the t-distribution
+};
+
+/// The loops. Two implementations that agree up to rounding and the order of summation.
+struct AlignmentKernels {
+  const char* name;
+  /// Fills `residuals`, whose arrays have the points' padded size.
+  void (*compare)(const ReferencePoints& points, const RgbdLevel& current, const WarpF& warp,
+                  Residuals& residuals);
+  /// Adds what all points contribute, upper triangle of the matrix only.
+  void (*sum)(const ReferencePoints& points, const ResidualView& residuals,
+              const Whitening& whitening, NormalEquations& equations);
+};
+
+/// Plain C++: the reference of the tests and the fallback.
+[[nodiscard]] const AlignmentKernels& scalarAlignmentKernels();
+/// The best this processor has, chosen at run time; the scalar ones when built without Highway.
+[[nodiscard]] const AlignmentKernels& vectorAlignmentKernels();
+
+/// Relative inverse depth deviations: see `Residuals`.
+constexpr float kAgreeing = 0.05F;
+constexpr float kNotOccluded = 0.2F;
+/// Relative inverse depth spread of 2x2 pixels of one surface.
+constexpr float kCellSpread = 0.1F;
+/// The gain unknown multiplies `(I_reference - kMiddleGrey) * kInverseGreySpread`.
+constexpr float kMiddleGrey = 128.0F;
+constexpr float kInverseGreySpread = 1.0F / 64.0F;
 
 }  // namespace planecloud

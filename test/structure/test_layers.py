@@ -36,7 +36,7 @@ CORE = {"std", "Eigen"}
 ALLOWED = {  # part: (libraries, components)
     "plane_fit": (CORE | {"SIMD"}, {"plane_fit"}),
     "icap": (CORE | {"nanoflann"}, {"plane_fit", "icap"}),
-    "frontend core": (CORE | {"OpenCV"}, {"plane_fit", "frontend_node"}),
+    "frontend core": (CORE | {"OpenCV", "SIMD"}, {"plane_fit", "frontend_node"}),
     "backend core": (CORE | {"Ceres", "SQLite", "PCL"}, {"plane_fit", "icap", "backend_node"}),
     "planecloud_msgs": (CORE | {"ROS", "Boost"}, {"plane_fit", "planecloud_msgs"}),
     "frontend node": (CORE | {"OpenCV", "ROS", "Boost", "image_transport", "PCL"},
