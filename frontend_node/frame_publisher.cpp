@@ -88,8 +88,8 @@ void PlanePreviewPublisher::publish(TrackedFrame tracked) {
   live.keyframe.stamp = tracked.frame.stamp;
   live.depth = std::move(tracked.frame.depth);
   live.grey = std::move(tracked.frame.grey);
-  live.camera = tracked.camera;
-  const Keyframe fitted = compressor_.compress(std::move(live), &FitBudget::Clock::now);
+  live.camera = tracked.camera;  // texture stays away: a preview shows planes
+  const Keyframe fitted = compressor_.compress(std::move(live), {&FitBudget::Clock::now, {}});
   const planecloud_slam::PlaneCloud message =
       toMessage(fitted.planes, fitted.stamp, tracked.camera_frame);
   planes_.publish(message);

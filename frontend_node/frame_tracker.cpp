@@ -38,13 +38,14 @@ FrameTracker::FrameTracker(const FrontendNodeOptions& options, std::string robot
       session_(session),
       odometry_(odometry) {}
 
-TrackedFrame FrameTracker::track(const InputFrame& input, bool rectified) {
+TrackedFrame FrameTracker::track(const InputFrame& input, const ImageReading& reading) {
   checkSizes(input);
   TrackedFrame tracked;
   tracked.frame.stamp = input.depth->header.stamp.toSec();
   tracked.frame.grey = greyFromMessage(*input.color);
   tracked.frame.depth = depthFromMessage(*input.depth);
-  tracked.camera = fromMessage(*input.camera_info, rectified);
+  if (reading.wants_color) tracked.frame.color = colorFromMessage(*input.color);
+  tracked.camera = fromMessage(*input.camera_info, reading.rectified);
   tracked.camera_frame = camera_frame_ = input.color->header.frame_id;
   useCamera(tracked.camera);
   if (input.time_jumped) {

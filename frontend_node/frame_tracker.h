@@ -22,6 +22,12 @@ struct TrackedFrame {
   std::string camera_frame;  ///< tf frame of the optical axes
 };
 
+/// How the images of a frame are to be read.
+struct ImageReading {
+  bool rectified = false;    ///< they are, see RectifyMode
+  bool wants_color = false;  ///< for the texture
+};
+
 /// The tracker as images feed it: decodes them, builds the frontend when the first camera info is
 /// there and goes on in a new segment when the camera or time changes. For one thread.
 class FrameTracker {
@@ -31,7 +37,7 @@ class FrameTracker {
                OdometrySource& odometry);
 
   /// Throws MessageError or std::invalid_argument naming the cure for images that cannot be used.
-  [[nodiscard]] TrackedFrame track(const InputFrame& input, bool rectified);
+  [[nodiscard]] TrackedFrame track(const InputFrame& input, const ImageReading& reading);
 
   /// Keyframes completed so far, oldest first; empties the list.
   [[nodiscard]] std::vector<CompletedKeyframe> takeCompleted();

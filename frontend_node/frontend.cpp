@@ -65,6 +65,7 @@ class Frontend::Impl {
                     const std::optional<Eigen::Isometry3d>& T_previous_current) {
     checkSize(raw.grey.width(), raw.grey.height(), camera_, "colour");
     checkSize(raw.depth.width(), raw.depth.height(), camera_, "depth");
+    if (!raw.color.empty()) checkSize(raw.color.width(), raw.color.height(), camera_, "texture's");
     if (reference_ && raw.stamp < last_stamp_) endSegment();
     RgbdFrame rectified;
     if (rectifier_) rectified = rectifier_->rectify(raw);
@@ -190,6 +191,7 @@ class Frontend::Impl {
     keyframe_.stamp = frame.stamp;
     keyframe_.T_odom_camera = T_odom_reference_ = T_odom_camera;
     keyframe_grey_ = frame.grey;
+    keyframe_color_ = frame.color;
     reference_.emplace(pyramid_, options_.tracking);
     local_map_.open(frame.depth.view());
     selector_.reset();
@@ -198,8 +200,8 @@ class Frontend::Impl {
   }
 
   void completeKeyframe() {
-    completed_.push_back(
-        {std::move(keyframe_), local_map_.depth(), std::move(keyframe_grey_), camera_});
+    completed_.push_back({std::move(keyframe_), local_map_.depth(), std::move(keyframe_grey_),
+                          camera_, std::move(keyframe_color_)});
   }
 
   const FrontendOptions options_;
@@ -214,6 +216,7 @@ class Frontend::Impl {
   std::optional<TrackingReference> reference_;  ///< of the open keyframe
   Keyframe keyframe_;                           ///< the open one
   Image<std::uint8_t> keyframe_grey_;
+  Image<Rgb8> keyframe_color_;
   KeyframeId next_id_;
   std::vector<CompletedKeyframe> completed_;
 

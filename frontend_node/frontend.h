@@ -13,6 +13,7 @@
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
+#include "planecloud_slam/plane_fit/rgb8.h"
 
 namespace planecloud {
 
@@ -21,6 +22,7 @@ struct RgbdFrame {
   double stamp = 0.0;        ///< of the depth image [s since the epoch]
   Image<std::uint8_t> grey;  ///< width x height, 0..255
   Image<float> depth;        ///< width x height, along the optical axis [m]; NaN: none
+  Image<Rgb8> color;         ///< width x height, or empty: only the texture is made of it
 };
 
 enum class TrackingStatus {
@@ -47,6 +49,7 @@ struct CompletedKeyframe {
   Image<float> depth;  ///< [m], NaN: none; rectified, in `camera`
   Image<std::uint8_t> grey;
   CameraIntrinsics camera;
+  Image<Rgb8> color;  ///< may be empty
 };
 
 /// The tracking half of the frontend: DVO against the local map of one keyframe (paper sec. 3.1).

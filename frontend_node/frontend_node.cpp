@@ -27,6 +27,7 @@ std::string checkedRobotName(const std::string& name, const std::string& name_sp
 FrontendNode::FrontendNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                            const FrontendNodeOptions& options)
     : options_(options),
+      live_options_(private_node, options),
       robot_(checkedRobotName(options.robot, node.getNamespace())),
       session_(parseSession(options.session, ros::WallTime::now().toNSec())),
       odometry_(options),
@@ -107,7 +108,9 @@ void FrontendNode::trackFrames() {
 void FrontendNode::trackFrame(const InputFrame& input) {
   const ros::WallTime start = ros::WallTime::now();
   try {
-    TrackedFrame tracked = tracker_.track(input, input_.isRectified());
+    const TextureFormat texture = live_options_.get().first.frontend.texture.format;
+    TrackedFrame tracked =
+        tracker_.track(input, {input_.isRectified(), texture == TextureFormat::kColor});
     ++counters_.frames;
     counters_.track_time = seconds(start);
     reportLoss(tracked.result);
@@ -140,22 +143,33 @@ void FrontendNode::passOnCompleted() {
 
 void FrontendNode::fitKeyframes() {
   KeyframeCompressor compressor(options_.frontend);
+  std::uint64_t known_changes = 0;
   while (std::optional<FittingTask> task = keyframes_.pop()) {
-    if (task->keyframe) {
-      const ros::WallTime start = ros::WallTime::now();
-      const Eigen::Isometry3d T_visual_camera = task->keyframe->keyframe.T_odom_camera;
-      Keyframe keyframe = compressor.compress(std::move(*task->keyframe), &FitBudget::Clock::now);
-      counters_.fit_time = seconds(start);
-      keyframe.T_odom_camera =
-          odometry_.keyframePose(task->camera_frame, keyframe.stamp, T_visual_camera);
-      sendKeyframe(std::move(keyframe), task->camera_frame);
+    const auto [options, changes] = live_options_.get();
+    if (changes != known_changes) {
+      known_changes = changes;
+      compressor.setOptions(options.frontend);
     }
+    if (task->keyframe) fitKeyframe(compressor, *task);
     if (task->finished) task->finished->set_value();
   }
 }
 
+void FrontendNode::fitKeyframe(KeyframeCompressor& compressor, FittingTask& task) {
+  const ros::WallTime start = ros::WallTime::now();
+  const Eigen::Isometry3d T_visual_camera = task.keyframe->keyframe.T_odom_camera;
+  const KeyframeBudget budget{
+      &FitBudget::Clock::now,
+      sender_.keyframeAllowance(task.keyframe->keyframe, task.camera_frame)};
+  Keyframe keyframe = compressor.compress(std::move(*task.keyframe), budget);
+  counters_.fit_time = seconds(start);
+  keyframe.T_odom_camera =
+      odometry_.keyframePose(task.camera_frame, keyframe.stamp, T_visual_camera);
+  sendKeyframe(std::move(keyframe), task.camera_frame);
+}
+
 void FrontendNode::sendKeyframe(Keyframe keyframe, const std::string& camera_frame) {
-  const std::size_t bytes = keyframe.planes.bytes.size();
+  const std::size_t bytes = keyframe.planes.bytes.size() + keyframe.texture.bytes.size();
   try {
     sender_.send(std::move(keyframe), camera_frame);
     ++counters_.keyframes;
@@ -198,6 +212,7 @@ void FrontendNode::onTimer() {
     has_open_keyframe_ = false;
     frames_.push({std::nullopt, std::make_shared<std::promise<void>>()});
   }
+  sender_.setRate(live_options_.get().first.link.bytes_per_second);
   publishDiagnostics();
 }
 
@@ -214,8 +229,9 @@ void FrontendNode::publishDiagnostics() {
   status.add("tracking time [s]", counters_.track_time);
   status.add("fit time [s]", counters_.fit_time);
   status.add("keyframes", counters_.keyframes);
-  status.add("plane bytes", counters_.bytes);
+  status.add("plane and texture bytes", counters_.bytes);
   status.add("backends", link.backends);
+  status.add("keyframes waiting for the link", sender_.waiting());
   status.add("keyframes kept", link.stored);
   status.add("bytes kept", link.stored_bytes);
   status.add("keyframes unacknowledged", link.unacknowledged);

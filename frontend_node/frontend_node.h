@@ -15,7 +15,9 @@
 #include "planecloud_slam/frontend_node/frame_publisher.h"
 #include "planecloud_slam/frontend_node/frame_tracker.h"
 #include "planecloud_slam/frontend_node/frontend_node_options.h"
+#include "planecloud_slam/frontend_node/keyframe_compressor.h"
 #include "planecloud_slam/frontend_node/keyframe_sender.h"
+#include "planecloud_slam/frontend_node/live_options.h"
 #include "planecloud_slam/frontend_node/odometry_source.h"
 #include "planecloud_slam/frontend_node/rgbd_input.h"
 #include "planecloud_slam/plane_fit/bounded_queue.h"
@@ -59,6 +61,7 @@ class FrontendNode {
   void reportLoss(const FrameResult& result);
   void passOnCompleted();
   void fitKeyframes();
+  void fitKeyframe(KeyframeCompressor& compressor, FittingTask& task);
   void sendKeyframe(Keyframe keyframe, const std::string& camera_frame);
   void previewFrames();
 
@@ -69,6 +72,7 @@ class FrontendNode {
   void publishDiagnostics();
 
   const FrontendNodeOptions options_;
+  const LiveOptions live_options_;
   const std::string robot_;
   const std::uint64_t session_;
   LogThrottle log_;

@@ -76,6 +76,7 @@ void FrontendOptions::check() const {
   local_map.check();
   plane_fit.check();
   codec.check();
+  texture.check();
 }
 
 }  // namespace planecloud

@@ -4,6 +4,7 @@
 
 #include "planecloud_slam/frontend_node/dense_tracker_options.h"
 #include "planecloud_slam/frontend_node/keyframe_selector.h"
+#include "planecloud_slam/frontend_node/keyframe_texture.h"
 #include "planecloud_slam/frontend_node/local_map.h"
 #include "planecloud_slam/frontend_node/loss_options.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
@@ -23,6 +24,7 @@ struct FrontendOptions {
   LocalMapOptions local_map;
   QuadtreeFitterOptions plane_fit;
   CodecOptions codec;
+  TextureOptions texture;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -33,6 +35,7 @@ struct FrontendOptions {
     visitFields("local_map/", self.local_map, visit);
     visitFields("plane_fit/", self.plane_fit, visit);
     visitFields("codec/", self.codec, visit);
+    visitFields("texture/", self.texture, visit);
   }
 
   /// Throws std::invalid_argument naming key, value and range.

@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "planecloud_slam/frontend_node/keyframe_payload.h"
 #include "planecloud_slam/plane_fit/appearance_descriptor.h"
-#include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 
 namespace planecloud {
@@ -14,12 +14,14 @@ class KeyframeCompressor::Impl {
  public:
   explicit Impl(const FrontendOptions& options) : options_(options) { options_.check(); }
 
-  Keyframe compress(CompletedKeyframe completed,
-                    std::function<FitBudget::Clock::time_point()> now) {
+  Keyframe compress(CompletedKeyframe completed, const KeyframeBudget& budget) {
     Keyframe keyframe = std::move(completed.keyframe);
     const PlaneCloud cloud =
-        fitterOf(completed.camera).fit(completed.depth.view(), budget(std::move(now)));
-    keyframe.planes = encode(cloud, options_.codec);
+        fitterOf(completed.camera).fit(completed.depth.view(), fitBudget(budget));
+    KeyframePayload payload = encodePayload(cloud, {completed.grey.view(), completed.color.view()},
+                                            {options_.codec, options_.texture}, budget.bytes);
+    keyframe.planes = std::move(payload.planes);
+    keyframe.texture = std::move(payload.texture);
     keyframe.descriptor = makeAppearanceDescriptor(completed.grey.view(), completed.depth.view());
     return keyframe;
   }
@@ -32,13 +34,13 @@ class KeyframeCompressor::Impl {
     return *fitter_;
   }
 
-  FitBudget budget(std::function<FitBudget::Clock::time_point()> now) const {
-    FitBudget budget;
-    if (now) budget = FitBudget::fromNow(options_.plane_fit.time_budget, std::move(now));
+  [[nodiscard]] FitBudget fitBudget(const KeyframeBudget& budget) const {
+    FitBudget fit;
+    if (budget.now) fit = FitBudget::fromNow(options_.plane_fit.time_budget, budget.now);
     if (options_.plane_fit.byte_budget > 0) {
-      budget.bytes = static_cast<std::size_t>(options_.plane_fit.byte_budget);
+      fit.bytes = static_cast<std::size_t>(options_.plane_fit.byte_budget);
     }
-    return budget;
+    return fit;
   }
 
   FrontendOptions options_;
@@ -47,13 +49,15 @@ class KeyframeCompressor::Impl {
 
 KeyframeCompressor::KeyframeCompressor(const FrontendOptions& options)
     : impl_(std::make_unique<Impl>(options)) {}
+void KeyframeCompressor::setOptions(const FrontendOptions& options) {
+  impl_ = std::make_unique<Impl>(options);
+}
 KeyframeCompressor::~KeyframeCompressor() = default;
 KeyframeCompressor::KeyframeCompressor(KeyframeCompressor&&) noexcept = default;
 KeyframeCompressor& KeyframeCompressor::operator=(KeyframeCompressor&&) noexcept = default;
 
-Keyframe KeyframeCompressor::compress(CompletedKeyframe completed,
-                                      std::function<FitBudget::Clock::time_point()> now) {
-  return impl_->compress(std::move(completed), std::move(now));
+Keyframe KeyframeCompressor::compress(CompletedKeyframe completed, const KeyframeBudget& budget) {
+  return impl_->compress(std::move(completed), budget);
 }
 
 }  // namespace planecloud

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/plane_fit/budget.h"
@@ -11,8 +13,17 @@
 
 namespace planecloud {
 
-/// The fitting half of the frontend: turns a completed keyframe into what travels (plane cloud
-/// under time and byte budgets, appearance descriptor). One per thread.
+/// What one keyframe may cost at the moment.
+struct KeyframeBudget {
+  /// Clock of `plane_fit/time_budget`, normally `&FitBudget::Clock::now`; without it there is no
+  /// time budget and the result depends on the keyframe alone.
+  std::function<FitBudget::Clock::time_point()> now;
+  /// Most bytes of planes and texture, beside `codec/byte_budget`; none: no such limit.
+  std::optional<std::size_t> bytes;
+};
+
+/// The fitting half of the frontend: turns a completed keyframe into what travels (plane cloud and
+/// texture under time and byte budgets, appearance descriptor). One per thread.
 class KeyframeCompressor {
  public:
   /// Throws std::invalid_argument when `options` fail their check.
@@ -21,11 +32,12 @@ class KeyframeCompressor {
   KeyframeCompressor(KeyframeCompressor&&) noexcept;
   KeyframeCompressor& operator=(KeyframeCompressor&&) noexcept;
 
-  /// Fits, encodes and describes. `now` is the clock of `plane_fit/time_budget` (normally
-  /// `&FitBudget::Clock::now`); without it there is no time budget and the result depends on the
-  /// keyframe alone.
-  [[nodiscard]] Keyframe compress(CompletedKeyframe completed,
-                                  std::function<FitBudget::Clock::time_point()> now = {});
+  /// Fits, encodes and describes.
+  [[nodiscard]] Keyframe compress(CompletedKeyframe completed, const KeyframeBudget& budget = {});
+
+  /// Goes on with other options for the next keyframe. Throws, and changes nothing, when they fail
+  /// their check.
+  void setOptions(const FrontendOptions& options);
 
  private:
   class Impl;

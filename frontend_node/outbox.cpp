@@ -10,14 +10,7 @@
 namespace planecloud {
 namespace {
 
-/// Poses, intrinsics and names around the payload of a keyframe message [B].
-constexpr std::size_t kOverhead = 250;
 constexpr int kMaxDoublings = 3;
-
-std::size_t sizeOf(const Keyframe& keyframe) {
-  return kOverhead + keyframe.planes.bytes.size() + keyframe.descriptor.size() +
-         keyframe.texture.bytes.size();
-}
 
 }  // namespace
 
@@ -26,6 +19,7 @@ void LinkOptions::check() const {
   checkRange("link/outbox_bytes", outbox_bytes, 0.0, 1e11);
   checkRange("link/resend_after", resend_after, 0.1, 60.0);
   checkRange("link/resend_window", resend_window, 1e3, 1e9);
+  if (bytes_per_second != 0.0) checkRange("link/bytes_per_second", bytes_per_second, 200.0, 1e9);
 }
 
 bool Outbox::Peer::has(std::int64_t number) const {
@@ -39,7 +33,7 @@ Outbox::Outbox(const LinkOptions& options, std::string robot, std::uint64_t sess
   options_.check();
 }
 
-void Outbox::add(std::shared_ptr<const Keyframe> keyframe, double now) {
+void Outbox::add(std::shared_ptr<const Keyframe> keyframe, std::size_t bytes, double now) {
   if (!options_.acknowledge) return;
   forgetSilentPeers(now);
   const std::uint32_t number = keyframe->id.number;
@@ -48,7 +42,7 @@ void Outbox::add(std::shared_ptr<const Keyframe> keyframe, double now) {
                                 " enters the outbox out of order: numbers must ascend");
   }
   Entry entry;
-  entry.bytes = sizeOf(*keyframe);
+  entry.bytes = bytes;
   entry.keyframe = std::move(keyframe);
   entry.sent = next_transmission_++;
   stored_bytes_ += entry.bytes;
@@ -129,7 +123,7 @@ void Outbox::takeLost(const Peer& peer, std::map<std::uint32_t, Entry*>& due) {
   }
 }
 
-std::vector<std::shared_ptr<const Keyframe>> Outbox::takeDue(double now) {
+std::vector<std::shared_ptr<const Keyframe>> Outbox::takeDue(double now, std::size_t most_bytes) {
   forgetSilentPeers(now);
   std::map<std::uint32_t, Entry*> due;
   for (auto& [name, peer] : peers_) {
@@ -138,7 +132,10 @@ std::vector<std::shared_ptr<const Keyframe>> Outbox::takeDue(double now) {
     takeLost(peer, due);
   }
   std::vector<std::shared_ptr<const Keyframe>> keyframes;
+  std::size_t bytes = 0;
   for (auto& [number, entry] : due) {
+    bytes += entry->bytes;
+    if (bytes > most_bytes) break;
     entry->sent = next_transmission_++;
     entry->resent = true;
     ++resent_;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,6 +29,10 @@ struct LinkOptions {
   /// Most bytes sent again that may be under way to a backend: half a second of the slowest link
   /// [B], [1e3, 1e9].
   double resend_window = 64e3;
+  /// Most bytes per second sent, over any 5 s and counting whole messages [B/s], 0: no limit, else
+  /// [200, 1e9]. Keyframes get coarser planes where their full ones would not fit, and wait for
+  /// room where even those do not.
+  double bytes_per_second = 0.0;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -36,6 +41,7 @@ struct LinkOptions {
     visit("outbox_bytes", self.outbox_bytes);
     visit("resend_after", self.resend_after);
     visit("resend_window", self.resend_window);
+    visit("bytes_per_second", self.bytes_per_second);
   }
   /// Throws std::invalid_argument naming key, value and range.
   void check() const;
@@ -71,13 +77,15 @@ class Outbox {
   /// Throws std::invalid_argument when `options` fail their check.
   Outbox(const LinkOptions& options, std::string robot, std::uint64_t session);
 
-  /// Takes a keyframe that is being sent at `now`; numbers must ascend.
-  void add(std::shared_ptr<const Keyframe> keyframe, double now);
+  /// Takes a keyframe of `bytes` on the wire that is being sent at `now`; numbers must ascend.
+  void add(std::shared_ptr<const Keyframe> keyframe, std::size_t bytes, double now);
 
   void acknowledge(const KeyframeReceipt& receipt, double now);
 
-  /// Keyframes to send again at `now`, oldest first; counts them as sent.
-  [[nodiscard]] std::vector<std::shared_ptr<const Keyframe>> takeDue(double now);
+  /// Keyframes to send again at `now`, oldest first, together at most `most_bytes`; counts them as
+  /// sent.
+  [[nodiscard]] std::vector<std::shared_ptr<const Keyframe>> takeDue(
+      double now, std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
   /// How many keyframes some backend heard within the timeout has not said to have.
   [[nodiscard]] std::size_t unacknowledged() const;

@@ -41,7 +41,10 @@ Rectifier& Rectifier::operator=(Rectifier&&) noexcept = default;
 RgbdFrame Rectifier::rectify(const RgbdFrame& frame) const {
   const int width = rectified_.width;
   const int height = rectified_.height;
-  RgbdFrame rectified{frame.stamp, Image<std::uint8_t>(width, height), Image<float>(width, height)};
+  RgbdFrame rectified;
+  rectified.stamp = frame.stamp;
+  rectified.grey = Image<std::uint8_t>(width, height);
+  rectified.depth = Image<float>(width, height);
   // cv::Mat has no read-only form; remap does not write to its source.
   const cv::Mat grey(height, width, CV_8UC1, const_cast<std::uint8_t*>(frame.grey.begin()));
   const cv::Mat depth(height, width, CV_32FC1, const_cast<float*>(frame.depth.begin()));
@@ -50,6 +53,13 @@ RgbdFrame Rectifier::rectify(const RgbdFrame& frame) const {
   cv::remap(grey, grey_out, maps_->pixel, maps_->fraction, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   cv::remap(depth, depth_out, maps_->nearest, cv::Mat(), cv::INTER_NEAREST, cv::BORDER_CONSTANT,
             cv::Scalar(std::numeric_limits<double>::quiet_NaN()));
+  if (!frame.color.empty()) {
+    rectified.color = Image<Rgb8>(width, height);
+    const cv::Mat color(height, width, CV_8UC3, const_cast<Rgb8*>(frame.color.begin()));
+    cv::Mat color_out(height, width, CV_8UC3, rectified.color.begin());
+    cv::remap(color, color_out, maps_->pixel, maps_->fraction, cv::INTER_LINEAR,
+              cv::BORDER_REPLICATE);
+  }
   return rectified;
 }
 

@@ -5,7 +5,8 @@
 # come before the first target.
 
 set(PLANECLOUD_SLAM_CATKIN_DEPENDS
-  diagnostic_msgs geometry_msgs image_transport message_filters nav_msgs pcl_conversions rosbag
+  diagnostic_msgs dynamic_reconfigure geometry_msgs image_transport message_filters nav_msgs
+  pcl_conversions rosbag
   roscpp sensor_msgs std_msgs std_srvs tf2_msgs tf2_ros topic_tools
   visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS message_generation ${PLANECLOUD_SLAM_CATKIN_DEPENDS})
@@ -41,6 +42,14 @@ foreach(kind msg srv)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/planecloud_msgs/${kind}
        ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/${kind} SYMBOLIC)
 endforeach()
+
+# What can be changed while the frontend runs, a file for each part.
+generate_dynamic_reconfigure_options(
+  config/reconfigure/Codec.cfg
+  config/reconfigure/Keyframe.cfg
+  config/reconfigure/Link.cfg
+  config/reconfigure/PlaneFit.cfg
+  config/reconfigure/Texture.cfg)
 
 planecloud_slam_uninstall_component_folders()
 generate_messages(DEPENDENCIES std_msgs)

@@ -98,17 +98,20 @@ std::uint8_t greyOf(int red, int green, int blue) {
   return static_cast<std::uint8_t>((9798 * red + 19235 * green + 3735 * blue + (1 << 14)) >> 15);
 }
 
-Image<std::uint8_t> greyFromColor(const sensor_msgs::Image& message, const ColorLayout& layout) {
+/// An image whose pixels are `convert(red, green, blue)` of the message's.
+template <typename Pixel, typename Convert>
+Image<Pixel> convertColor(const sensor_msgs::Image& message, const ColorLayout& layout,
+                          Convert convert) {
   checkLayout(message, layout.bytes);
-  Image<std::uint8_t> grey(static_cast<int>(message.width), static_cast<int>(message.height));
-  for (int y = 0; y < grey.height(); ++y) {
+  Image<Pixel> image(static_cast<int>(message.width), static_cast<int>(message.height));
+  for (int y = 0; y < image.height(); ++y) {
     const std::uint8_t* pixel = rowOf(message, y);
-    std::uint8_t* target = grey.row(y);
-    for (int x = 0; x < grey.width(); ++x, pixel += layout.bytes) {
-      target[x] = greyOf(pixel[layout.red], pixel[layout.green], pixel[layout.blue]);
+    Pixel* target = image.row(y);
+    for (int x = 0; x < image.width(); ++x, pixel += layout.bytes) {
+      target[x] = convert(pixel[layout.red], pixel[layout.green], pixel[layout.blue]);
     }
   }
-  return grey;
+  return image;
 }
 
 void readDistortion(const sensor_msgs::CameraInfo& message, CameraIntrinsics& camera) {
@@ -143,10 +146,23 @@ Image<std::uint8_t> greyFromMessage(const sensor_msgs::Image& message) {
         message, [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); });
   }
   for (const ColorLayout& layout : kColorLayouts) {
-    if (message.encoding == layout.encoding) return greyFromColor(message, layout);
+    if (message.encoding == layout.encoding) {
+      return convertColor<std::uint8_t>(message, layout, greyOf);
+    }
   }
   refuseEncoding("colour", message.encoding,
                  "rgb8, bgr8, rgba8, bgra8, mono8, mono16, 8UC1, 8UC3 or 8UC4");
+}
+
+Image<Rgb8> colorFromMessage(const sensor_msgs::Image& message) {
+  for (const ColorLayout& layout : kColorLayouts) {
+    if (message.encoding != layout.encoding) continue;
+    return convertColor<Rgb8>(message, layout,
+                              [](std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
+                                return Rgb8{red, green, blue};
+                              });
+  }
+  return {};
 }
 
 CameraIntrinsics fromMessage(const sensor_msgs::CameraInfo& message, bool rectified) {

@@ -9,6 +9,7 @@
 
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
+#include "planecloud_slam/plane_fit/rgb8.h"
 #include "planecloud_slam/planecloud_msgs/message_error.h"
 
 namespace planecloud {
@@ -23,6 +24,10 @@ namespace planecloud {
 /// bgra8 or 8UC4 (blue first); colours are weighed as OpenCV's RGB2GRAY does, bit for bit. Throws
 /// like `depthFromMessage`.
 [[nodiscard]] Image<std::uint8_t> greyFromMessage(const sensor_msgs::Image& message);
+
+/// Colours of the same encodings; empty for an image without colour. Throws like
+/// `depthFromMessage`.
+[[nodiscard]] Image<Rgb8> colorFromMessage(const sensor_msgs::Image& message);
 
 /// Intrinsics of `P` when the images are `rectified` (D then speaks of the lens before it), else of
 /// `K` and `D` (plumb_bob). Throws MessageError for an uncalibrated camera, another distortion

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "planecloud_slam/plane_fit/image_view.h"
+#include "planecloud_slam/plane_fit/rgb8.h"
 #include "planecloud_slam/rosbags/hallway_renderer.h"
-#include "planecloud_slam/rosbags/rgb8.h"
 
 namespace planecloud {
 

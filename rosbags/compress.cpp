@@ -6,6 +6,7 @@
 #include <iostream>
 #include <optional>
 
+#include "planecloud_slam/rosbags/color_image.h"
 #include "planecloud_slam/rosbags/command_line.h"
 #include "planecloud_slam/rosbags/compression_pictures.h"
 #include "planecloud_slam/rosbags/compression_report.h"
@@ -33,8 +34,11 @@ void addFitFlags(po::options_description& flags) {
       "side of the smallest tiles [px]")(
       "encoding", po::value<std::string>()->default_value(text(defaults.codec.encoding)),
       "raw (the paper's 32 bytes a plane) or compact")(
+      "texture", po::value<std::string>()->default_value("none"),
+      "what of the image goes with the planes: none, grey or color")(
       "time-budget", po::value<double>()->default_value(0.0), "for each fit [s], 0: none")(
-      "byte-budget", po::value<int>()->default_value(0), "for each image [B], 0: none");
+      "byte-budget", po::value<int>()->default_value(0),
+      "for planes and texture of each image [B], 0: none");
 }
 
 ToolDescription describe() {
@@ -47,7 +51,7 @@ ToolDescription describe() {
   addFitFlags(tool.flags);
   addSequenceFlags(tool.flags);
   tool.flags.add_options()("pictures", po::value<std::string>()->value_name("DIR"),
-                           "writes restored depth, error and tiles of each image as PNG")(
+                           "writes restored depth, error, tiles and texture of each image as PNG")(
       "json", po::bool_switch(), "print the figures as JSON")(
       "csv", po::value<std::string>()->value_name("F"), "writes a line of figures per image");
   tool.arguments = {"INPUT"};
@@ -65,6 +69,7 @@ CompressionOptions readOptions(const ParsedFlags& flags) {
   try {
     fromString(flags["acceptance"].as<std::string>(), options.plane_fit.acceptance);
     fromString(flags["encoding"].as<std::string>(), options.codec.encoding);
+    fromString(flags["texture"].as<std::string>(), options.texture.format);
     // A plane costs 32 bytes in RAW, so the fit itself can stop; COMPACT knows only when coding.
     if (options.codec.encoding == PlaneCloudEncoding::kRaw) {
       options.plane_fit.byte_budget = options.codec.byte_budget;
@@ -120,10 +125,12 @@ CompressionReport compressAll(const std::vector<std::shared_ptr<Recording>>& rec
     CompressionTrial trial(recording->camera(), options);
     ProgressBar progress("compress " + recording->robot(), recording->size());
     for (std::size_t index = 0; std::optional<RgbdFrame> frame = recording->next(); ++index) {
+      const cv::Mat color = recording->color();
+      if (options.texture.format == TextureFormat::kColor) frame->color = toRgb8(color);
       CompressedFrame compressed = trial.compress(*frame, recording->trueDepth());
       compressed.robot = recording->robot();
       report.add(compressed);
-      output.write(index, *frame, recording->color(), compressed);
+      output.write(index, *frame, color, compressed);
       progress.advance();
     }
   }

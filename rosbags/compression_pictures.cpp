@@ -96,12 +96,27 @@ cv::Mat drawTiles(const cv::Mat& background, const PlaneCloud& cloud) {
   return picture;
 }
 
+cv::Mat drawTexture(const KeyframeTexture& texture, const Image<float>& restored) {
+  const cv::Mat small = cv::imdecode(texture.bytes, cv::IMREAD_COLOR);
+  if (small.empty()) throw std::runtime_error("the texture is no image");
+  cv::Mat picture;
+  cv::resize(small, picture, {restored.width(), restored.height()}, 0.0, 0.0, cv::INTER_LINEAR);
+  for (int y = 0; y < restored.height(); ++y) {
+    for (int x = 0; x < restored.width(); ++x) {
+      if (!hasDepth(restored(x, y))) picture.at<cv::Vec3b>(y, x) = cv::Vec3b::all(0);
+    }
+  }
+  return picture;
+}
+
 void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::Mat& color,
                    const CompressedFrame& compressed) {
   writePicture(prefix + "_depth.png", drawDepth(compressed.depth));
   writePicture(prefix + "_error.png", drawError(frame.depth, compressed.depth));
   const cv::Mat background = color.empty() ? greyBackground(frame.grey) : color;
   writePicture(prefix + "_tiles.png", drawTiles(background, compressed.cloud));
+  if (compressed.texture.bytes.empty()) return;
+  writePicture(prefix + "_texture.png", drawTexture(compressed.texture, compressed.depth));
 }
 
 }  // namespace planecloud

@@ -22,8 +22,12 @@ namespace planecloud {
 /// The tiles over `background` (8UC3), tinted by the direction they face.
 [[nodiscard]] cv::Mat drawTiles(const cv::Mat& background, const PlaneCloud& cloud);
 
-/// Writes <prefix>_depth.png, <prefix>_error.png and <prefix>_tiles.png; `color` empty: over the
-/// grey image. Throws std::runtime_error naming the file that cannot be written.
+/// The texture painted on the planes, seen from the camera that made them; black: no plane.
+[[nodiscard]] cv::Mat drawTexture(const KeyframeTexture& texture, const Image<float>& restored);
+
+/// Writes <prefix>_depth.png, <prefix>_error.png, <prefix>_tiles.png and, where there is texture,
+/// <prefix>_texture.png; `color` empty: tiles over the grey image. Throws std::runtime_error naming
+/// the file that cannot be written.
 void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::Mat& color,
                    const CompressedFrame& compressed);
 

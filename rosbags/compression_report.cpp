@@ -55,6 +55,7 @@ void CompressionReport::add(const CompressedFrame& frame) {
   encode_times_.push_back(frame.encode_time);
   decode_times_.push_back(frame.decode_time);
   bytes_.push_back(static_cast<double>(frame.bytes));
+  texture_bytes_.push_back(static_cast<double>(frame.texture_bytes));
   planes_.push_back(static_cast<double>(frame.planes));
   raw_bytes_.push_back(kRawPlaneBytes * planes_.back());
   coverages_.push_back(frame.coverage);
@@ -67,6 +68,14 @@ void CompressionReport::add(const CompressedFrame& frame) {
   raw_true_errors_.push_back(frame.truth->raw);
 }
 
+double CompressionReport::bitsPerPlane() const {
+  const double planes = summarise(planes_).total;
+  const double bytes = summarise(bytes_).total - summarise(texture_bytes_).total;
+  return planes > 0.0 ? 8.0 * bytes / planes : 0.0;
+}
+
+bool CompressionReport::hasTexture() const { return summarise(texture_bytes_).total > 0.0; }
+
 Json CompressionReport::json() const {
   Json json = {{"images", fit_times_.size()},
                {"fit_ms", timesJson(fit_times_)},
@@ -78,7 +87,8 @@ Json CompressionReport::json() const {
                {"coverage", summarise(coverages_).mean},
                {"point_plane_mm", meanInMilli(point_plane_errors_)},
                {"depth_error_mm", meanInMilli(depth_errors_)},
-               {"bits_per_plane", 8.0 * summarise(bytes_).total / summarise(planes_).total}};
+               {"bits_per_plane", bitsPerPlane()}};
+  if (hasTexture()) json["texture_bytes"] = {{"mean", summarise(texture_bytes_).mean}};
   if (!true_errors_.empty()) {
     json["true_error_mm"] = meanInMilli(true_errors_);
     json["raw_true_error_mm"] = meanInMilli(raw_true_errors_);
@@ -92,10 +102,10 @@ std::string CompressionReport::table() const {
   text += timesRow("encode, median", encode_times_);
   text += timesRow("decode, median", decode_times_);
   text += bytesRow("bytes, mean", bytes_);
+  if (hasTexture()) text += bytesRow("of them texture, mean", texture_bytes_);
   text += bytesRow("at 32 B a plane, mean", raw_bytes_);
   text += format("%-22s %9.1f\n", "planes, mean", summarise(planes_).mean);
-  text += format("%-22s %9.2f\n", "bits a plane",
-                 8.0 * summarise(bytes_).total / summarise(planes_).total);
+  text += format("%-22s %9.2f\n", "bits a plane", bitsPerPlane());
   text += format("%-22s %9.2f %%\n", "coverage", 100.0 * summarise(coverages_).mean);
   text += format("%-22s %9.2f mm\n", "point to plane", meanInMilli(point_plane_errors_));
   text += format("%-22s %9.2f mm\n", "depth error", meanInMilli(depth_errors_));
@@ -107,16 +117,18 @@ std::string CompressionReport::table() const {
 }
 
 std::string CompressionReport::csvHeader() {
-  return "robot,stamp,planes,bytes,raw_bytes,coverage,point_plane_mm,depth_error_mm,fit_ms,"
+  return "robot,stamp,planes,bytes,texture_bytes,raw_bytes,coverage,point_plane_mm,depth_error_mm,"
+         "fit_ms,"
          "encode_ms,decode_ms,true_error_mm,raw_true_error_mm";
 }
 
 std::string CompressionReport::csvLine(const CompressedFrame& frame) {
-  std::string line = format(
-      "%s,%.6f,%zu,%zu,%.0f,%.5f,%.4f,%.4f,%.4f,%.4f,%.4f,", frame.robot.c_str(), frame.stamp,
-      frame.planes, frame.bytes, kRawPlaneBytes * static_cast<double>(frame.planes), frame.coverage,
-      kMilli * frame.point_plane_error, kMilli * frame.depth_error, kMilli * frame.fit_time,
-      kMilli * frame.encode_time, kMilli * frame.decode_time);
+  std::string line =
+      format("%s,%.6f,%zu,%zu,%zu,%.0f,%.5f,%.4f,%.4f,%.4f,%.4f,%.4f,", frame.robot.c_str(),
+             frame.stamp, frame.planes, frame.bytes, frame.texture_bytes,
+             kRawPlaneBytes * static_cast<double>(frame.planes), frame.coverage,
+             kMilli * frame.point_plane_error, kMilli * frame.depth_error, kMilli * frame.fit_time,
+             kMilli * frame.encode_time, kMilli * frame.decode_time);
   if (!frame.truth) return line + ",";
   return line + format("%.4f,%.4f", kMilli * frame.truth->compressed, kMilli * frame.truth->raw);
 }

@@ -24,8 +24,12 @@ class CompressionReport {
   [[nodiscard]] static std::string csvLine(const CompressedFrame& frame);
 
  private:
+  /// Of the planes alone.
+  [[nodiscard]] double bitsPerPlane() const;
+  [[nodiscard]] bool hasTexture() const;
+
   std::vector<double> fit_times_, encode_times_, decode_times_;  ///< [s]
-  std::vector<double> bytes_, raw_bytes_, planes_;
+  std::vector<double> bytes_, texture_bytes_, raw_bytes_, planes_;
   std::vector<double> coverages_;
   std::vector<double> point_plane_errors_, depth_errors_;  ///< [m]
   std::vector<double> true_errors_, raw_true_errors_;      ///< [m]

@@ -68,6 +68,7 @@ CompressionTrial::CompressionTrial(const CameraIntrinsics& camera,
       options_(options),
       fitter_(camera_, options.plane_fit) {
   options_.codec.check();
+  options_.texture.check();
 }
 
 CompressedFrame CompressionTrial::compress(const RgbdFrame& frame,
@@ -82,12 +83,15 @@ CompressedFrame CompressionTrial::compress(const RgbdFrame& frame,
   const PlaneCloud cloud = fitter_.fit(frame.depth.view(), budget);
   result.fit_time = fit.elapsed();
   const Stopwatch coding;
-  const EncodedPlaneCloud encoded = encode(cloud, options_.codec);
+  KeyframePayload payload = encodePayload(cloud, {frame.grey.view(), frame.color.view()},
+                                          {options_.codec, options_.texture});
   result.encode_time = coding.elapsed();
   const Stopwatch decoding;
-  result.cloud = decode(encoded);
+  result.cloud = decode(payload.planes);
   result.decode_time = decoding.elapsed();
-  result.bytes = encoded.bytes.size();
+  result.bytes = payload.bytes();
+  result.texture_bytes = payload.texture.bytes.size();
+  result.texture = std::move(payload.texture);
   result.planes = result.cloud.tiles.size();
   result.depth = reconstructDepth(result.cloud, *camera_);
   measureFit(frame.depth, *camera_, result);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "planecloud_slam/frontend_node/keyframe_payload.h"
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
@@ -17,7 +18,8 @@ namespace planecloud {
 /// How frames are compressed.
 struct CompressionOptions {
   QuadtreeFitterOptions plane_fit;
-  CodecOptions codec;
+  CodecOptions codec;  ///< its byte budget counts texture too
+  TextureOptions texture;
 };
 
 /// Mean distances [m] along the viewing ray to the true surface, over the pixels where sensor,
@@ -34,7 +36,8 @@ struct CompressedFrame {
   double fit_time = 0.0;            ///< [s]
   double encode_time = 0.0;         ///< [s]
   double decode_time = 0.0;         ///< [s]
-  std::size_t bytes = 0;            ///< of the coded planes
+  std::size_t bytes = 0;            ///< of the coded planes and the texture
+  std::size_t texture_bytes = 0;    ///< of the texture
   std::size_t planes = 0;           ///< restored
   double coverage = 0.0;            ///< share of the pixels with depth that have a plane
   double point_plane_error = 0.0;   ///< mean distance of the covered points to their planes [m]
@@ -42,6 +45,7 @@ struct CompressedFrame {
   std::optional<TrueErrors> truth;  ///< only of the built-in world
   PlaneCloud cloud;                 ///< restored
   Image<float> depth;               ///< of the restored planes [m], NaN: none
+  KeyframeTexture texture;
 };
 
 /// Fits, encodes and decodes depth images of one camera, lens distortion and all, and measures what

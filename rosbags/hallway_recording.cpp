@@ -105,7 +105,7 @@ std::optional<RgbdFrame> HallwayRecording::next() {
   depth_ = options_.noise ? sensor.senseDepth(view, sensed) : toMillimetres(view.depth);
   color_ = toBgr(options_.noise ? sensor.senseColor(view, sensed) : toRgb8(view.color));
   true_depth_ = std::move(view.depth);
-  return RgbdFrame{truth.stamp, greyFromColor(color_), toMetres(depth_)};
+  return RgbdFrame{truth.stamp, greyFromColor(color_), toMetres(depth_), {}};
 }
 
 std::vector<std::unique_ptr<HallwayRecording>> makeHallwayRecordings(

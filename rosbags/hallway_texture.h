@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "planecloud_slam/plane_fit/image_view.h"
-#include "planecloud_slam/rosbags/rgb8.h"
+#include "planecloud_slam/plane_fit/rgb8.h"
 
 namespace planecloud {
 

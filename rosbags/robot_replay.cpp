@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "planecloud_slam/plane_fit/keyframe_rounding.h"
+#include "planecloud_slam/rosbags/color_image.h"
 #include "planecloud_slam/rosbags/read_ahead.h"
 #include "planecloud_slam/rosbags/stopwatch.h"
 
@@ -66,7 +67,10 @@ class RobotReplay::Impl {
   std::optional<RgbdFrame> readFrame() {
     if (options_.max_frames > 0 && frames_read_ == options_.max_frames) return std::nullopt;
     ++frames_read_;
-    return recording_->next();
+    std::optional<RgbdFrame> frame = recording_->next();
+    const bool wants_color = options_.frontend.texture.format == TextureFormat::kColor;
+    if (frame && wants_color) frame->color = toRgb8(recording_->color());
+    return frame;
   }
 
   void track(const RgbdFrame& frame, ReplayedFrame& step) {

@@ -104,7 +104,7 @@ def evaluate(bag, directory, files):
 
 def show(diagnostics, accuracy, files):
     keyframes = diagnostics.total("keyframes", "frontend")
-    plane_bytes = diagnostics.total("plane bytes", "frontend")
+    plane_bytes = diagnostics.total("plane and texture bytes", "frontend")
     print(f"frames       {diagnostics.total('frames', 'frontend'):.0f}, "
           f"{diagnostics.total('frames dropped', 'frontend'):.0f} dropped, "
           f"{diagnostics.total('frames lost', 'frontend'):.0f} lost")

@@ -18,7 +18,7 @@ CameraIntrinsics distortedCamera() {
 
 /// Tangent u as grey and depth seen by the distorted camera, so that images tell their rays.
 RgbdFrame rayImages(const Camera& camera) {
-  RgbdFrame frame{1.0, Image<std::uint8_t>(320, 240), Image<float>(320, 240)};
+  RgbdFrame frame{1.0, Image<std::uint8_t>(320, 240), Image<float>(320, 240), {}};
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 320; ++x) {
       const float u = camera.tangentsX()(x, y);
@@ -45,7 +45,7 @@ TEST(Rectifier, PixelsShowTheRayOfTheUndistortedCamera) {
 }
 
 TEST(Rectifier, MakesNoDepthBetweenTwoSurfaces) {
-  RgbdFrame frame{0.0, Image<std::uint8_t>(320, 240, 0), Image<float>(320, 240, 4.0F)};
+  RgbdFrame frame{0.0, Image<std::uint8_t>(320, 240, 0), Image<float>(320, 240, 4.0F), {}};
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 150; ++x) frame.depth(x, y) = 1.0F;
   }

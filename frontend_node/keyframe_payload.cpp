@@ -1,0 +1,41 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/frontend_node/keyframe_payload.h"
+
+#include <algorithm>
+
+namespace planecloud {
+namespace {
+
+constexpr std::size_t kLeastStream = 64;  // CodecOptions::byte_budget
+
+std::optional<std::size_t> tighter(const CodecOptions& codec,
+                                   std::optional<std::size_t> most_bytes) {
+  if (codec.byte_budget == 0) return most_bytes;
+  const auto budget = static_cast<std::size_t>(codec.byte_budget);
+  return std::min(budget, most_bytes.value_or(budget));
+}
+
+}  // namespace
+
+KeyframePayload encodePayload(const PlaneCloud& cloud, const TextureSource& images,
+                              const PayloadOptions& options,
+                              std::optional<std::size_t> most_bytes) {
+  KeyframePayload payload;
+  const std::optional<std::size_t> budget = tighter(options.codec, most_bytes);
+  if (!budget) {
+    payload.planes = encode(cloud, options.codec);
+    payload.texture = encodeTexture(images.grey, images.color, options.texture);
+    return payload;
+  }
+  const auto share =
+      static_cast<std::size_t>(options.texture.max_share * static_cast<double>(*budget));
+  payload.texture = encodeTexture(images.grey, images.color, options.texture, share);
+  CodecOptions codec = options.codec;
+  const std::size_t rest = *budget - payload.texture.bytes.size();
+  codec.byte_budget = static_cast<int>(std::max(kLeastStream, rest));
+  payload.planes = encode(cloud, codec);
+  return payload;
+}
+
+}  // namespace planecloud
