@@ -75,6 +75,9 @@ struct DenseTrackerOptions {
 
   /// Throws std::invalid_argument naming key, value and range.
   void check() const;
+
+  /// The same without a motion prior: for images whose motion nothing is known of.
+  [[nodiscard]] DenseTrackerOptions withoutPrior() const;
 };
 
 }  // namespace planecloud

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planecloud_slam/frontend_node/frontend_options.h"
+#include "planecloud_slam/frontend_node/keyframe_view.h"
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
@@ -27,7 +28,8 @@ struct RgbdFrame {
 
 enum class TrackingStatus {
   kInitialised,  ///< first frame of a segment: it is the reference
-  kTracked,
+  kTracked,      ///< aligned to the keyframe the frame before was aligned to, or its successor
+  kRelocalised,  ///< found again against an earlier keyframe: the pose may jump
   kLost,
 };
 
@@ -36,7 +38,10 @@ struct FrameResult {
   TrackingStatus status = TrackingStatus::kLost;
   std::string reason;  ///< why it was lost, for people; empty otherwise
   double stamp = 0.0;  ///< [s]
+  /// Of lost frames: where the wheels say, if they do, else where it was last known.
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
+  /// Counts pieces of the track whose relation is unknown; a new one begins with kInitialised.
+  int segment = 0;
   /// Reference keyframe and the pose relative to it, so that trajectories move with the graph.
   KeyframeId reference;
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
@@ -50,6 +55,7 @@ struct CompletedKeyframe {
   Image<std::uint8_t> grey;
   CameraIntrinsics camera;
   Image<Rgb8> color;  ///< may be empty
+  HistoryTask history;  ///< what `KeyframeCompressor` aligns it with
 };
 
 /// The tracking half of the frontend: DVO against the local map of one keyframe (paper sec. 3.1).
@@ -64,8 +70,9 @@ class Frontend {
   Frontend& operator=(Frontend&&) noexcept;
 
   /// Tracks one frame. `T_previous_current`, when given, is the motion of the optical frame since
-  /// the previous call from elsewhere (wheel odometry). A stamp before the previous one begins a
-  /// new segment, so does the first good frame after `lost/new_segment_after` without a track.
+  /// the previous call from elsewhere (wheel odometry). A lost camera is looked for in the
+  /// short-term history. A stamp before the previous one begins a new segment; so does a good image
+  /// after `lost/new_segment_after` without a track, unless the wheels know the way to it.
   /// Throws std::invalid_argument when the frame's size is not the camera's.
   [[nodiscard]] FrameResult track(const RgbdFrame& frame,
                                   const std::optional<Eigen::Isometry3d>& T_previous_current = {});

@@ -49,6 +49,22 @@ void DenseTrackerOptions::check() const {
   checkRange("tracking/information_scale", information_scale, 1e-6, 1e3);
 }
 
+DenseTrackerOptions DenseTrackerOptions::withoutPrior() const {
+  DenseTrackerOptions options = *this;
+  options.prior_translation = options.prior_rotation = 0.0;
+  return options;
+}
+
+void HistoryOptions::check() const {
+  checkRange("history/keyframes", keyframes, 1, 1000);
+  checkRange("history/edges", edges, 0, 16);
+  checkRange("history/trials", trials, 0, 100);
+  checkRange("history/min_overlap", min_overlap, 0.0, 1.0);
+  checkRange("history/min_inliers", min_inliers, 0.0, 1.0);
+  checkRange("history/max_dissimilarity", max_dissimilarity, 0.0, 1.0);
+  checkRange("history/candidates", candidates, 0, 100);
+}
+
 void LossOptions::check() const {
   checkRange("lost/min_valid_depth", min_valid_depth, 0.0, 1.0);
   checkRange("lost/min_contrast", min_contrast, 0.0, 128.0);
@@ -59,6 +75,10 @@ void LossOptions::check() const {
   checkRange("lost/min_entropy_ratio", min_entropy_ratio, 0.0, 1.0);
   checkRange("lost/max_speed", max_speed, 0.1, 100.0);
   checkRange("lost/max_turn_rate", max_turn_rate, 0.1, 100.0);
+  checkRange("lost/max_deviation", max_deviation, 1e-3, 10.0);
+  checkRange("lost/max_turn_deviation", max_turn_deviation, 1e-3, 3.0);
+  checkRange("lost/max_guess_error", max_guess_error, 0.0, 10.0);
+  checkRange("lost/max_guess_turn_error", max_guess_turn_error, 0.0, 3.0);
   checkRange("lost/new_segment_after", new_segment_after, 0.0, 3600.0);
 }
 
@@ -73,6 +93,7 @@ void FrontendOptions::check() const {
   tracking.check();
   keyframe.check();
   lost.check();
+  history.check();
   local_map.check();
   plane_fit.check();
   codec.check();

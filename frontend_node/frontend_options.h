@@ -3,6 +3,7 @@
 #pragma once
 
 #include "planecloud_slam/frontend_node/dense_tracker_options.h"
+#include "planecloud_slam/frontend_node/history_options.h"
 #include "planecloud_slam/frontend_node/keyframe_selector.h"
 #include "planecloud_slam/frontend_node/keyframe_texture.h"
 #include "planecloud_slam/frontend_node/local_map.h"
@@ -21,6 +22,7 @@ struct FrontendOptions {
   DenseTrackerOptions tracking;
   KeyframeSelectorOptions keyframe;
   LossOptions lost;
+  HistoryOptions history;
   LocalMapOptions local_map;
   QuadtreeFitterOptions plane_fit;
   CodecOptions codec;
@@ -32,6 +34,7 @@ struct FrontendOptions {
     visitFields("tracking/", self.tracking, visit);
     visitFields("keyframe/", self.keyframe, visit);
     visitFields("lost/", self.lost, visit);
+    visitFields("history/", self.history, visit);
     visitFields("local_map/", self.local_map, visit);
     visitFields("plane_fit/", self.plane_fit, visit);
     visitFields("codec/", self.codec, visit);

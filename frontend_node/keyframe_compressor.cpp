@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "planecloud_slam/frontend_node/history_aligner.h"
 #include "planecloud_slam/frontend_node/keyframe_payload.h"
 #include "planecloud_slam/plane_fit/appearance_descriptor.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
@@ -12,7 +13,10 @@ namespace planecloud {
 
 class KeyframeCompressor::Impl {
  public:
-  explicit Impl(const FrontendOptions& options) : options_(options) { options_.check(); }
+  explicit Impl(const FrontendOptions& options)
+      : options_(options), history_(options.history, options.tracking) {
+    options_.check();
+  }
 
   Keyframe compress(CompletedKeyframe completed, const KeyframeBudget& budget) {
     Keyframe keyframe = std::move(completed.keyframe);
@@ -22,6 +26,9 @@ class KeyframeCompressor::Impl {
                                             {options_.codec, options_.texture}, budget.bytes);
     keyframe.planes = std::move(payload.planes);
     keyframe.texture = std::move(payload.texture);
+    HistoryLinks links = history_.align(completed.history, keyframe.edges);
+    keyframe.edges.insert(keyframe.edges.end(), links.edges.begin(), links.edges.end());
+    keyframe.closure_hints = std::move(links.hints);
     keyframe.descriptor = makeAppearanceDescriptor(completed.grey.view(), completed.depth.view());
     return keyframe;
   }
@@ -44,6 +51,7 @@ class KeyframeCompressor::Impl {
   }
 
   FrontendOptions options_;
+  HistoryAligner history_;
   std::optional<QuadtreeFitter> fitter_;
 };
 

@@ -23,7 +23,8 @@ struct KeyframeBudget {
 };
 
 /// The fitting half of the frontend: turns a completed keyframe into what travels (plane cloud and
-/// texture under time and byte budgets, appearance descriptor). One per thread.
+/// texture under time and byte budgets, edges to the short-term history, appearance descriptor). One
+/// per thread.
 class KeyframeCompressor {
  public:
   /// Throws std::invalid_argument when `options` fail their check.
@@ -32,7 +33,7 @@ class KeyframeCompressor {
   KeyframeCompressor(KeyframeCompressor&&) noexcept;
   KeyframeCompressor& operator=(KeyframeCompressor&&) noexcept;
 
-  /// Fits, encodes and describes.
+  /// Fits, encodes, aligns with the history and describes.
   [[nodiscard]] Keyframe compress(CompletedKeyframe completed, const KeyframeBudget& budget = {});
 
   /// Goes on with other options for the next keyframe. Throws, and changes nothing, when they fail

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/frontend_node/loss_detector.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstddef>
 #include <iomanip>
@@ -15,6 +17,18 @@ namespace {
 constexpr int kSampleStep = 4;
 /// Allowed on top of speed times time: stamps jitter.
 constexpr double kMotionSlack = 0.05;  // [m] and [rad]
+
+/// Share of a motion that wheels may be wrong by when they slip.
+constexpr double kWheelShare = 0.2;
+
+/// Standard deviation in the least certain of three directions of the twist from `first` on.
+double largestDeviation(const Matrix6d& information, int first) {
+  const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
+  const Eigen::Matrix3d block = covariance.block<3, 3>(first, first);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (block + block.transpose()),
+                                                              Eigen::EigenvaluesOnly);
+  return std::sqrt(solver.eigenvalues()(2));
+}
 
 std::string compare(const std::string& what, double value, const std::string& relation,
                     double limit) {
@@ -63,6 +77,14 @@ std::string LossDetector::findAlignmentFault(const Alignment& alignment,
   if (alignment.status == AlignmentStatus::kNotConverged) {
     return "the alignment did not converge";
   }
+  std::string fault = findWeakness(alignment);
+  if (fault.empty() && motion.entropy_ratio < options_.min_entropy_ratio) {
+    fault = compare("the entropy ratio is", motion.entropy_ratio, "<", options_.min_entropy_ratio);
+  }
+  return fault.empty() ? findImplausibleMotion(motion) : fault;
+}
+
+std::string LossDetector::findWeakness(const Alignment& alignment) const {
   if (alignment.overlap < options_.min_overlap) {
     return compare("the keyframe's share in view is", alignment.overlap, "<", options_.min_overlap);
   }
@@ -77,9 +99,20 @@ std::string LossDetector::findAlignmentFault(const Alignment& alignment,
     return compare("the grey residuals are", alignment.scale.sigma_grey, ">",
                    options_.max_intensity_residual);
   }
-  if (motion.entropy_ratio < options_.min_entropy_ratio) {
-    return compare("the entropy ratio is", motion.entropy_ratio, "<", options_.min_entropy_ratio);
+  const double deviation = largestDeviation(alignment.information, 0);
+  if (!(deviation <= options_.max_deviation)) {
+    return compare("the position's standard deviation [m] is", deviation, ">",
+                   options_.max_deviation);
   }
+  const double turn_deviation = largestDeviation(alignment.information, 3);
+  if (!(turn_deviation <= options_.max_turn_deviation)) {
+    return compare("the rotation's standard deviation [rad] is", turn_deviation, ">",
+                   options_.max_turn_deviation);
+  }
+  return "";
+}
+
+std::string LossDetector::findImplausibleMotion(const TrackedMotion& motion) const {
   const double translation = motion.T_previous_current.translation().norm();
   if (translation > options_.max_speed * motion.seconds + kMotionSlack) {
     return compare(
@@ -91,6 +124,19 @@ std::string LossDetector::findAlignmentFault(const Alignment& alignment,
     return compare("the turn [rad] since the last good frame is", rotation,
                    "> what the turn rate limit allows:",
                    options_.max_turn_rate * motion.seconds + kMotionSlack);
+  }
+  if (!motion.T_previous_current_wheels) return "";
+  const Eigen::Isometry3d& T_wheels = *motion.T_previous_current_wheels;
+  const Eigen::Isometry3d difference = T_wheels.inverse() * motion.T_previous_current;
+  const double allowed = options_.max_guess_error + kWheelShare * T_wheels.translation().norm();
+  if (difference.translation().norm() > allowed) {
+    return compare("the motion [m] differs from the wheels' by", difference.translation().norm(),
+                   ">", allowed);
+  }
+  const double allowed_turn = options_.max_guess_turn_error + kWheelShare * rotationAngle(T_wheels);
+  if (rotationAngle(difference) > allowed_turn) {
+    return compare("the turn [rad] differs from the wheels' by", rotationAngle(difference), ">",
+                   allowed_turn);
   }
   return "";
 }

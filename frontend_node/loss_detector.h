@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 
 #include "planecloud_slam/frontend_node/dense_tracker.h"
@@ -16,6 +17,8 @@ struct TrackedMotion {
   double entropy_ratio = 1.0;  ///< see `KeyframeSelector::entropyRatio`
   Eigen::Isometry3d T_previous_current = Eigen::Isometry3d::Identity();  ///< since the last good
   double seconds = 0.0;                                                  ///< since the last good
+  /// The same motion as the wheels report it.
+  std::optional<Eigen::Isometry3d> T_previous_current_wheels;
 };
 
 /// Says why a frame or its alignment cannot be trusted.
@@ -32,6 +35,9 @@ class LossDetector {
                                                const TrackedMotion& motion) const;
 
  private:
+  [[nodiscard]] std::string findWeakness(const Alignment& alignment) const;
+  [[nodiscard]] std::string findImplausibleMotion(const TrackedMotion& motion) const;
+
   LossOptions options_;
 };
 

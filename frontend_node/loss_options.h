@@ -17,7 +17,15 @@ struct LossOptions {
   double min_entropy_ratio = 0.6;        ///< of `KeyframeSelector`, below it nothing holds, [0, 1]
   double max_speed = 3.0;                ///< [m/s], [0.1, 100]
   double max_turn_rate = 4.0;            ///< [rad/s], [0.1, 100]
-  double new_segment_after = 1.0;        ///< time lost before a new segment opens [s], [0, 3600]
+  /// Standard deviation of the pose in its least certain direction [m], [1e-3, 10].
+  double max_deviation = 0.05;
+  double max_turn_deviation = 0.05;  ///< the same for rotation [rad], [1e-3, 3]
+  /// Motion between two frames and the wheels' may differ by this and a fifth of the motion [m],
+  /// [0, 10].
+  double max_guess_error = 0.1;
+  double max_guess_turn_error = 0.1;  ///< the same for rotation [rad], [0, 3]
+  /// Time without a track on images good enough for one before a new segment opens [s], [0, 3600].
+  double new_segment_after = 1.0;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -30,6 +38,10 @@ struct LossOptions {
     visit("min_entropy_ratio", self.min_entropy_ratio);
     visit("max_speed", self.max_speed);
     visit("max_turn_rate", self.max_turn_rate);
+    visit("max_deviation", self.max_deviation);
+    visit("max_turn_deviation", self.max_turn_deviation);
+    visit("max_guess_error", self.max_guess_error);
+    visit("max_guess_turn_error", self.max_guess_turn_error);
     visit("new_segment_after", self.new_segment_after);
   }
 

@@ -19,6 +19,12 @@ std::uint64_t nanoseconds(double stamp) {
   return stamp > 0.0 ? static_cast<std::uint64_t>(std::llround(stamp * 1e9)) : 0;
 }
 
+FrontendOptions compressorOptions(const RobotReplayOptions& options) {
+  FrontendOptions frontend = options.frontend;
+  if (!options.history) frontend.history.edges = 0;
+  return frontend;
+}
+
 std::string describeJump(const std::string& robot, double from, double to) {
   std::ostringstream text;
   text.precision(3);
@@ -35,7 +41,7 @@ class RobotReplay::Impl {
       : recording_(std::move(recording)),
         index_(index),
         options_(options),
-        compressor_(options.frontend) {
+        compressor_(compressorOptions(options)) {
     recording_->camera().check();
     source_ = [this] { return readFrame(); };
     if (options.read_ahead > 0) {
@@ -93,9 +99,6 @@ class RobotReplay::Impl {
     const Stopwatch stopwatch;
     Keyframe keyframe = compressor_.compress(std::move(completed));
     const double fit_time = stopwatch.elapsed();
-    if (!options_.history && keyframe.edges.size() > 1) {
-      keyframe.edges.erase(keyframe.edges.begin() + 1, keyframe.edges.end());
-    }
     return {asTravelled(std::move(keyframe)), fit_time};
   }
 

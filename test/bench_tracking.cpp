@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How fast and how true tracking is.
-// Usage: bench_tracking [--ablation | --information] INPUT... [key=value...]
+// Usage: bench_tracking [--means | --ablation | --information | --trials] INPUT... [key=value...]
 // INPUT is a folder in the TUM layout, hallway:SEED (the drive around the block) or corridor:SEED
 // (once along its 15 m); a key is one of the frontend's options, e.g. tracking/levels=4.
+// --trials runs twenty seeds of the trials of loss in the built-in world, and five in each INPUT.
 // Without a flag: time, ATE and RPE beside cv::rgbd::RgbdOdometry on the same frames.
 #include "bench_tracking.h"
 
@@ -17,6 +18,8 @@
 namespace planecloud::bench {
 namespace {
 
+constexpr int kTrialSeeds = 20;
+
 int run(int argc, char** argv) {
   std::string mode;
   std::vector<std::string> inputs;
@@ -25,7 +28,7 @@ int run(int argc, char** argv) {
     const std::string argument = argv[i];
     const std::size_t equals = argument.find('=');
     if (argument.rfind("--", 0) == 0) {
-      mode = argument;
+      mode = argument;  // "--trials=5": five seeds
     } else if (equals != std::string::npos) {
       values[argument.substr(0, equals)] = argument.substr(equals + 1);
     } else {
@@ -34,6 +37,10 @@ int run(int argc, char** argv) {
   }
   FrontendOptions options;
   takeOptions(values, options, "");
+  if (mode.rfind("--trials", 0) == 0 && values.empty()) {
+    runTrials(inputs, options, mode == "--trials" ? kTrialSeeds : std::stoi(mode.substr(9)));
+    return 0;
+  }
   if (!values.empty() || inputs.empty()) {
     std::fprintf(stderr, values.empty() ? "no INPUT\n" : "unknown key: %s\n",
                  values.empty() ? "" : values.begin()->first.c_str());
@@ -45,8 +52,8 @@ int run(int argc, char** argv) {
   }
   if (mode.empty()) {
     comparePeer(sets, options);
-  } else if (mode == "--ablation") {
-    runAblation(sets, options);
+  } else if (mode == "--ablation" || mode == "--means") {
+    runAblation(sets, options, mode == "--means");
   } else if (mode == "--information") {
     judgeInformation(sets, options);
   } else {

@@ -45,7 +45,9 @@ using FrameSets = std::vector<std::shared_ptr<const FrameSet>>;
 /// Time and accuracy against cv::rgbd::RgbdOdometry on the same frames.
 void comparePeer(const FrameSets& sets, const FrontendOptions& options);
 /// Means over the spacings with each switch turned, tracking alone and the whole system.
-void runAblation(const FrameSets& sets, const FrontendOptions& options);
+void runAblation(const FrameSets& sets, const FrontendOptions& options, bool default_only);
+/// The trials of loss: `seeds` of them in the built-in world, a quarter of that in each input.
+void runTrials(const std::vector<std::string>& inputs, const FrontendOptions& options, int seeds);
 /// Normalised errors squared of odometry and history edges.
 void judgeInformation(const FrameSets& sets, const FrontendOptions& options);
 

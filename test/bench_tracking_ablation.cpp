@@ -55,6 +55,7 @@ struct Switch {
 const std::vector<Switch>& switches() {
   static const std::vector<Switch> table = {
       {"default", [](FrontendOptions&) {}},
+      {"no history edges", [](FrontendOptions& o) { o.history.edges = 0; }},
       {"no gain and offset",
        [](FrontendOptions& o) { o.tracking.brightness = BrightnessModel::kConstant; }},
       {"offset only", [](FrontendOptions& o) { o.tracking.brightness = BrightnessModel::kOffset; }},
@@ -73,7 +74,7 @@ const std::vector<Switch>& switches() {
 
 }  // namespace
 
-void runAblation(const FrameSets& sets, const FrontendOptions& options) {
+void runAblation(const FrameSets& sets, const FrontendOptions& options, bool default_only) {
   std::printf("means over keyframe spacings of 0.15, 0.20, 0.25 and 0.30 m\n");
   for (const auto& set : sets) {
     std::printf("%-24s %7s %7s %6s %8s %8s %7s %8s %6s %6s\n", set->name.c_str(), "median",
@@ -86,6 +87,7 @@ void runAblation(const FrameSets& sets, const FrontendOptions& options) {
                   1e3 * row.median, 1e3 * row.p95, row.lost, row.odometry_ate, row.rpe,
                   100.0 * row.drift, row.ate, row.keyframes_per_metre, row.kilobytes_per_metre);
       std::fflush(stdout);
+      if (default_only) break;
     }
   }
 }

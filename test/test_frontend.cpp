@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -117,23 +118,101 @@ TEST(Frontend, ShortDarknessIsLostAndRegainedWithoutAJump) {
   EXPECT_LT(driftSince(0, 8, first, light), 0.005);
 }
 
+/// What a camera sees that was turned around: nothing of the path.
+RgbdFrame elsewhere(int i) {
+  RgbdFrame frame = synthetic::render(synthetic::camera(), pose(0, 0, 0, 0, 2.5, 0));
+  frame.stamp = pathFrame(i).stamp;
+  return frame;
+}
+
 TEST(Frontend, LongLossBeginsANewSegment) {
   FrontendOptions options;
   options.lost.new_segment_after = 0.5;
   Frontend frontend = makeFrontend(options);
   (void)frontend.track(pathFrame(0));
   (void)frontend.track(pathFrame(1));
-  RgbdFrame elsewhere = synthetic::render(synthetic::camera(), pose(0, 0, 0, 0, 2.5, 0));
-  elsewhere.stamp = pathFrame(3).stamp;
-  EXPECT_EQ(frontend.track(elsewhere).status, TrackingStatus::kLost);
-  elsewhere.stamp = pathFrame(20).stamp;
-  const FrameResult again = frontend.track(elsewhere);
+  for (int i = 3; i < 10; ++i) {
+    const FrameResult lost = frontend.track(elsewhere(i));
+    EXPECT_EQ(lost.status, TrackingStatus::kLost);
+    EXPECT_EQ(lost.segment, 0);
+  }
+  FrameResult again;
+  for (int i = 10; i < 13 && again.status == TrackingStatus::kLost; ++i) {
+    again = frontend.track(elsewhere(i));
+  }
   EXPECT_EQ(again.status, TrackingStatus::kInitialised);
   EXPECT_EQ(again.reference.number, 1U);
+  EXPECT_EQ(again.segment, 1);
   frontend.finish();
   const std::vector<CompletedKeyframe> completed = frontend.takeCompleted();
   ASSERT_EQ(completed.size(), 2U);
   EXPECT_TRUE(completed[1].keyframe.edges.empty());
+}
+
+TEST(Frontend, DarknessAloneOpensNoSegment) {
+  Frontend frontend = makeFrontend();
+  (void)frontend.track(pathFrame(0));
+  for (int i = 1; i < 40; ++i) (void)frontend.track(blackFrame(i));
+  RgbdFrame light = pathFrame(1);
+  light.stamp = pathFrame(40).stamp;
+  EXPECT_EQ(frontend.track(light).status, TrackingStatus::kTracked);
+}
+
+TEST(Frontend, ComesBackToAnEarlierKeyframe) {
+  Frontend frontend = makeFrontend();
+  const FrameResult first = frontend.track(pathFrame(0));
+  for (int i = 1; i <= 40; ++i) (void)frontend.track(pathFrame(i));
+  RgbdFrame kidnapped = pathFrame(2);
+  kidnapped.stamp = pathFrame(41).stamp;
+  const FrameResult found = frontend.track(kidnapped);
+  ASSERT_EQ(found.status, TrackingStatus::kRelocalised) << found.reason;
+  EXPECT_EQ(found.segment, 0);
+  EXPECT_LT(driftSince(0, 2, first, found), 0.02);
+  for (int i = 3; i <= 20; ++i) {
+    RgbdFrame frame = pathFrame(i);
+    frame.stamp = pathFrame(39 + i).stamp;
+    ASSERT_EQ(frontend.track(frame).status, TrackingStatus::kTracked) << i;
+  }
+  frontend.finish();
+  const std::vector<CompletedKeyframe> completed = frontend.takeCompleted();
+  int jumps = 0;
+  for (std::size_t k = 1; k < completed.size(); ++k) {
+    ASSERT_EQ(completed[k].keyframe.edges.size(), 1U);
+    const std::uint32_t before = completed[k].keyframe.edges.front().other.number;
+    EXPECT_LT(before, completed[k].keyframe.id.number);
+    jumps += before + 1 < completed[k].keyframe.id.number ? 1 : 0;
+  }
+  EXPECT_EQ(jumps, 1);  // the one after the jump hangs on the keyframe found again
+}
+
+TEST(Frontend, WheelsBridgeWhatTheCameraDoesNotSee) {
+  FrontendOptions options;
+  options.lost.new_segment_after = 0.3;
+  Frontend frontend = makeFrontend(options);
+  const FrameResult first = frontend.track(pathFrame(0));
+  for (int i = 1; i <= 10; ++i) {
+    (void)frontend.track(pathFrame(i), pathPose(i - 1).inverse() * pathPose(i));
+  }
+  for (int i = 11; i <= 14; ++i) {
+    const FrameResult dark = frontend.track(blackFrame(i), pathPose(i - 1).inverse() * pathPose(i));
+    EXPECT_EQ(dark.status, TrackingStatus::kLost);
+    EXPECT_LT(driftSince(0, i, first, dark), 0.01);
+  }
+  // Then the camera looks the other way, as the wheels say.
+  Eigen::Isometry3d T_previous_current = pathPose(14).inverse() * pose(0, 0, 0, 0, 2.5, 0);
+  FrameResult bridged;
+  for (int i = 15; i < 25 && bridged.status == TrackingStatus::kLost; ++i) {
+    bridged = frontend.track(elsewhere(i), T_previous_current);
+    T_previous_current = Eigen::Isometry3d::Identity();
+  }
+  EXPECT_EQ(bridged.status, TrackingStatus::kRelocalised);
+  EXPECT_EQ(bridged.segment, 0);
+  frontend.finish();
+  const Keyframe last = frontend.takeCompleted().back().keyframe;
+  ASSERT_EQ(last.edges.size(), 1U);
+  const Eigen::Isometry3d T = last.edges.front().T_other_this;
+  // It claims no more than 5 % of the turn.
+  EXPECT_LT(last.edges.front().information(4, 4), 1.0 / std::pow(0.05 * rotationAngle(T), 2));
 }
 
 TEST(Frontend, NothingIsOpenedOnUselessImages) {

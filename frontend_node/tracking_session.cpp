@@ -1,0 +1,220 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/frontend_node/tracking_session.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace planecloud {
+namespace {
+
+/// Frames farther apart than this do not count as time on usable images [s].
+constexpr double kLongestFrameGap = 0.2;
+
+/// A level camera looking along x of the odometry frame (x forward, y left, z up).
+Eigen::Isometry3d levelledCamera() {
+  Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
+  T_odom_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return T_odom_camera;
+}
+
+/// What the wheels of a floor robot are worth after motion `T`: they slip by some percent, and see
+/// nothing of a tilt.
+Matrix6d wheelInformation(const Eigen::Isometry3d& T) {
+  const double translation = 0.02 + 0.05 * T.translation().norm();
+  const double rotation = 0.02 + 0.05 * rotationAngle(T);
+  Vector6d diagonal;
+  diagonal.head<3>().setConstant(1.0 / (translation * translation));
+  diagonal.tail<3>().setConstant(1.0 / (rotation * rotation));
+  return diagonal.asDiagonal();
+}
+
+}  // namespace
+
+TrackingSession::TrackingSession(const FrontendOptions& options, const CameraIntrinsics& camera,
+                                 KeyframeId first_id)
+    : options_(options),
+      pyramid_(camera, options.tracking),
+      tracker_(options.tracking),
+      selector_(options.keyframe),
+      loss_(options.lost),
+      relocaliser_(options.history, options.tracking),
+      open_(options.local_map, camera),
+      next_id_(std::move(first_id)),
+      T_odom_start_(levelledCamera()) {}
+
+FrameResult TrackingSession::track(const RgbdFrame& frame,
+                                   const std::optional<Eigen::Isometry3d>& T_previous_current) {
+  predictMotion(frame.stamp, T_previous_current);
+  FrameResult result = process(frame);
+  result.stamp = frame.stamp;
+  result.segment = segment_;
+  last_stamp_ = frame.stamp;
+  return result;
+}
+
+std::vector<CompletedKeyframe> TrackingSession::takeCompleted() {
+  return std::exchange(completed_, {});
+}
+
+/// Where the frame at `stamp` should be, from wheel odometry, else at constant velocity.
+void TrackingSession::predictMotion(double stamp,
+                                    const std::optional<Eigen::Isometry3d>& T_previous_current) {
+  if (!isTracking()) return;
+  wheels_since_good_ = T_previous_current && (wheels_since_good_ || !isLost());
+  if (T_previous_current) {
+    T_reference_predicted_ = T_reference_predicted_ * *T_previous_current;
+  } else if (velocity_ && !isLost()) {
+    T_reference_predicted_ = T_reference_last_ * expSe3(*velocity_ * (stamp - last_stamp_));
+  }
+}
+
+FrameResult TrackingSession::process(const RgbdFrame& frame) {
+  const std::string image_fault = loss_.findImageFault(frame);
+  if (!image_fault.empty()) {
+    last_was_usable_ = false;
+    return lose(image_fault);
+  }
+  pyramid_.assign(frame.grey.view(), frame.depth.view());
+  if (!isTracking()) return openSegment(frame);
+  const Alignment alignment = tracker_.align(
+      *reference_.points, pyramid_, {{T_reference_predicted_, T_reference_last_}, brightness_});
+  const bool leaving =
+      selector_.isLeavingKeyframe(alignment.T_reference_current, alignment.normal_matrix);
+  const std::string fault = loss_.findAlignmentFault(alignment, motionOf(alignment, frame.stamp));
+  return fault.empty() ? accept(frame, alignment, leaving) : recover(frame, fault);
+}
+
+TrackedMotion TrackingSession::motionOf(const Alignment& alignment, double stamp) const {
+  TrackedMotion motion;
+  motion.entropy_ratio = selector_.entropyRatio();
+  motion.T_previous_current = T_reference_last_.inverse() * alignment.T_reference_current;
+  motion.seconds = stamp - last_good_stamp_;
+  if (wheels_since_good_) {
+    motion.T_previous_current_wheels = T_reference_last_.inverse() * T_reference_predicted_;
+  }
+  return motion;
+}
+
+FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& alignment,
+                                    bool leaving) {
+  const Eigen::Isometry3d& T_reference_camera = alignment.T_reference_current;
+  const double seconds = frame.stamp - last_good_stamp_;
+  if (seconds > 0.0) {
+    velocity_ = logSe3(T_reference_last_.inverse() * T_reference_camera) / seconds;
+  }
+  T_reference_last_ = T_reference_predicted_ = T_reference_camera;
+  brightness_ = alignment.brightness;
+  last_good_stamp_ = frame.stamp;
+  usable_lost_ = 0.0;
+
+  FrameResult result;
+  result.status = TrackingStatus::kTracked;
+  result.T_odom_camera = reference_.view->T_odom_camera * T_reference_camera;
+  result.reference = reference_.view->id;
+  result.T_reference_camera = T_reference_camera;
+  result.information = alignment.information;
+  if (leaving) {
+    openKeyframe(frame, result.T_odom_camera,
+                 {{result.reference, T_reference_camera, result.information}});
+  } else {
+    open_.fuse(frame, T_reference_camera);
+  }
+  return result;
+}
+
+/// The alignment to the reference failed on an image that is good enough for one.
+FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& fault) {
+  const double since_last = frame.stamp - last_stamp_;
+  if (last_was_usable_ && isLost()) usable_lost_ += std::min(since_last, kLongestFrameGap);
+  last_was_usable_ = true;
+  if (const std::optional<Relocalisation> found = relocaliser_.find(pyramid_, history_)) {
+    switchTo(*found);
+    FrameResult result = accept(frame, found->alignment, false);
+    result.status = TrackingStatus::kRelocalised;
+    velocity_.reset();
+    return result;
+  }
+  if (usable_lost_ < options_.lost.new_segment_after) return lose(fault);
+  if (wheels_since_good_) return bridgeByWheels(frame);
+  endSegment();
+  return openSegment(frame);
+}
+
+/// The pose stays where it was last known, or goes with the wheels.
+FrameResult TrackingSession::lose(const std::string& reason) {
+  velocity_.reset();
+  FrameResult result;
+  result.status = TrackingStatus::kLost;
+  result.reason = reason;
+  result.T_odom_camera = T_odom_start_;
+  if (!isTracking()) return result;
+  result.reference = reference_.view->id;
+  result.T_reference_camera = wheels_since_good_ ? T_reference_predicted_ : T_reference_last_;
+  result.T_odom_camera = reference_.view->T_odom_camera * result.T_reference_camera;
+  return result;
+}
+
+/// Nothing is recognised, but the wheels know the way: the segment goes on with a weak edge.
+FrameResult TrackingSession::bridgeByWheels(const RgbdFrame& frame) {
+  const RelativePoseEdge edge{reference_.view->id, T_reference_predicted_,
+                              wheelInformation(T_reference_predicted_)};
+  FrameResult result;
+  result.status = TrackingStatus::kRelocalised;
+  result.T_odom_camera = reference_.view->T_odom_camera * T_reference_predicted_;
+  result.reference = edge.other;
+  result.T_reference_camera = edge.T_other_this;
+  result.information = edge.information;
+  openKeyframe(frame, result.T_odom_camera, {edge});
+  last_good_stamp_ = frame.stamp;
+  return result;
+}
+
+FrameResult TrackingSession::openSegment(const RgbdFrame& frame) {
+  ++segment_;
+  openKeyframe(frame, T_odom_start_, {});
+  last_good_stamp_ = frame.stamp;
+  FrameResult result;
+  result.status = TrackingStatus::kInitialised;
+  result.T_odom_camera = T_odom_start_;
+  result.reference = reference_.view->id;
+  return result;
+}
+
+void TrackingSession::openKeyframe(const RgbdFrame& frame, const Eigen::Isometry3d& T_odom_camera,
+                                   std::vector<RelativePoseEdge> edges) {
+  completeKeyframe();
+  reference_.view = std::make_shared<const KeyframeView>(
+      KeyframeView{next_id_, segment_, T_odom_camera, pyramid_, describeView(pyramid_)});
+  reference_.points = std::make_shared<const TrackingReference>(pyramid_, options_.tracking);
+  ++next_id_.number;
+  open_.open(frame, reference_, std::move(edges));
+  brightness_ = Brightness{};
+  T_reference_last_ = T_reference_predicted_ = Eigen::Isometry3d::Identity();
+  usable_lost_ = 0.0;
+  selector_.reset();
+}
+
+void TrackingSession::switchTo(const Relocalisation& found) {
+  completeKeyframe();
+  reference_ = {found.view, found.reference};
+  segment_ = found.view->segment;
+  selector_.reset();
+}
+
+void TrackingSession::completeKeyframe() {
+  if (!open_.isOpen()) return;
+  completed_.push_back(open_.complete({history_.begin(), history_.end()}));
+  history_.push_back(completed_.back().history.view);
+  if (history_.size() > static_cast<std::size_t>(options_.history.keyframes)) history_.pop_front();
+}
+
+void TrackingSession::endSegment() {
+  if (!isTracking()) return;
+  completeKeyframe();
+  T_odom_start_ = reference_.view->T_odom_camera * T_reference_last_;
+  reference_ = {};
+  velocity_.reset();
+}
+
+}  // namespace planecloud

@@ -1,0 +1,83 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planecloud_slam/frontend_node/dense_tracker.h"
+#include "planecloud_slam/frontend_node/frontend.h"
+#include "planecloud_slam/frontend_node/keyframe_selector.h"
+#include "planecloud_slam/frontend_node/loss_detector.h"
+#include "planecloud_slam/frontend_node/open_keyframe.h"
+#include "planecloud_slam/frontend_node/relocaliser.h"
+
+namespace planecloud {
+
+/// Tracking in one camera without distortion: which keyframe frames are aligned to, when the next
+/// one opens, and what happens when the track is lost.
+class TrackingSession {
+ public:
+  /// Throws std::invalid_argument when options or camera fail their check.
+  TrackingSession(const FrontendOptions& options, const CameraIntrinsics& camera,
+                  KeyframeId first_id);
+
+  /// See Frontend::track; stamps must not run backwards.
+  [[nodiscard]] FrameResult track(const RgbdFrame& frame,
+                                  const std::optional<Eigen::Isometry3d>& T_previous_current);
+
+  /// Completes the open keyframe; the next frame opens a segment where this one ended.
+  void endSegment();
+  void setNextPose(const Eigen::Isometry3d& T_odom_camera) { T_odom_start_ = T_odom_camera; }
+  [[nodiscard]] std::vector<CompletedKeyframe> takeCompleted();
+
+  [[nodiscard]] bool isTracking() const { return static_cast<bool>(reference_.view); }
+  [[nodiscard]] const KeyframeId& nextId() const { return next_id_; }
+  [[nodiscard]] const Eigen::Isometry3d& nextPose() const { return T_odom_start_; }
+
+ private:
+  void predictMotion(double stamp, const std::optional<Eigen::Isometry3d>& T_previous_current);
+  [[nodiscard]] FrameResult process(const RgbdFrame& frame);
+  [[nodiscard]] FrameResult accept(const RgbdFrame& frame, const Alignment& alignment,
+                                   bool leaving);
+  [[nodiscard]] FrameResult recover(const RgbdFrame& frame, const std::string& fault);
+  [[nodiscard]] FrameResult lose(const std::string& reason);
+  [[nodiscard]] FrameResult bridgeByWheels(const RgbdFrame& frame);
+  [[nodiscard]] FrameResult openSegment(const RgbdFrame& frame);
+  [[nodiscard]] TrackedMotion motionOf(const Alignment& alignment, double stamp) const;
+  void switchTo(const Relocalisation& found);
+  void openKeyframe(const RgbdFrame& frame, const Eigen::Isometry3d& T_odom_camera,
+                    std::vector<RelativePoseEdge> edges);
+  void completeKeyframe();
+  [[nodiscard]] bool isLost() const { return last_stamp_ > last_good_stamp_; }
+
+  const FrontendOptions options_;
+  RgbdPyramid pyramid_;
+  DenseTracker tracker_;
+  KeyframeSelector selector_;
+  LossDetector loss_;
+  Relocaliser relocaliser_;
+  OpenKeyframe open_;
+
+  TrackedReference reference_;  ///< what frames are aligned to; no view: none
+  std::deque<KeyframeViewPtr> history_;
+  KeyframeId next_id_;
+  int segment_ = -1;
+  std::vector<CompletedKeyframe> completed_;
+
+  Eigen::Isometry3d T_odom_start_;  ///< where the next segment begins
+  Eigen::Isometry3d T_reference_last_ = Eigen::Isometry3d::Identity();       ///< last good frame
+  Eigen::Isometry3d T_reference_predicted_ = Eigen::Isometry3d::Identity();  ///< this frame
+  std::optional<Vector6d> velocity_;                                         ///< [m/s, rad/s]
+  Brightness brightness_;
+  double last_stamp_ = 0.0;
+  double last_good_stamp_ = 0.0;
+  double usable_lost_ = 0.0;  ///< time lost on usable images [s]
+  bool last_was_usable_ = false;
+  bool wheels_since_good_ = false;  ///< the wheels spoke ever since the last good frame
+};
+
+}  // namespace planecloud
