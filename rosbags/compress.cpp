@@ -6,10 +6,10 @@
 #include <iostream>
 #include <optional>
 
-#include "planecloud_slam/rosbags/color_image.h"
 #include "planecloud_slam/rosbags/command_line.h"
 #include "planecloud_slam/rosbags/compression_pictures.h"
 #include "planecloud_slam/rosbags/compression_report.h"
+#include "planecloud_slam/rosbags/compression_source.h"
 #include "planecloud_slam/rosbags/compression_trial.h"
 #include "planecloud_slam/rosbags/open_recordings.h"
 #include "planecloud_slam/rosbags/progress_bar.h"
@@ -44,14 +44,19 @@ void addFitFlags(po::options_description& flags) {
 ToolDescription describe() {
   ToolDescription tool;
   tool.name = "compress";
-  tool.summary =
-      "Turns every depth image of an input into planes and back, and says what it costs.";
+  tool.summary = "Turns the depth images of an input into planes and back, and says what it costs.";
   tool.synopsis = "INPUT [flags]";
   tool.notes = kInputHelp;
   addFitFlags(tool.flags);
   addSequenceFlags(tool.flags);
-  tool.flags.add_options()("pictures", po::value<std::string>()->value_name("DIR"),
-                           "writes restored depth, error, tiles and texture of each image as PNG")(
+  tool.flags.add_options()(
+      "keyframes", po::bool_switch(),
+      "compress the keyframes that tracking would send, their depth fused with "
+      "that of the images in between, instead of every image")(
+      "every", po::value<int>()->default_value(1), "take only each N-th image")(
+      "max-images", po::value<int>()->default_value(0), "take at most so many, 0: all")(
+      "pictures", po::value<std::string>()->value_name("DIR"),
+      "writes restored depth, error, tiles and texture of each image as PNG")(
       "json", po::bool_switch(), "print the figures as JSON")(
       "csv", po::value<std::string>()->value_name("F"), "writes a line of figures per image");
   tool.arguments = {"INPUT"};
@@ -82,6 +87,21 @@ CompressionOptions readOptions(const ParsedFlags& flags) {
   return options;
 }
 
+CompressionSelection readSelection(const ParsedFlags& flags, const CompressionOptions& options) {
+  const int every = flags["every"].as<int>();
+  const int max_images = flags["max-images"].as<int>();
+  if (every < 1) throw UsageError("--every " + std::to_string(every) + ": must be at least 1");
+  if (max_images < 0) {
+    throw UsageError("--max-images " + std::to_string(max_images) + ": must be at least 0");
+  }
+  CompressionSelection selection;
+  selection.keyframes = flags["keyframes"].as<bool>();
+  selection.color = options.texture.format == TextureFormat::kColor;
+  selection.every = static_cast<std::size_t>(every);
+  selection.max_images = static_cast<std::size_t>(max_images);
+  return selection;
+}
+
 /// What is written while frames come.
 class CompressionOutput {
  public:
@@ -97,13 +117,12 @@ class CompressionOutput {
     }
   }
 
-  void write(std::size_t index, const RgbdFrame& frame, const cv::Mat& color,
-             const CompressedFrame& compressed) {
+  void write(std::size_t index, const CompressionItem& item, const CompressedFrame& compressed) {
     if (csv_.is_open()) csv_ << CompressionReport::csvLine(compressed) << '\n';
     if (pictures_.empty()) return;
     char number[16];
     std::snprintf(number, sizeof(number), "_%06zu", index);
-    writePictures(pictures_ + "/" + compressed.robot + number, frame, color, compressed);
+    writePictures(pictures_ + "/" + compressed.robot + number, item, compressed);
   }
 
   void close() {
@@ -118,20 +137,30 @@ class CompressionOutput {
   std::string pictures_;
 };
 
+/// A frontend that compresses as these options say.
+FrontendOptions frontendOf(const CompressionOptions& options) {
+  FrontendOptions frontend;
+  frontend.plane_fit = options.plane_fit;
+  frontend.codec = options.codec;
+  frontend.texture = options.texture;
+  return frontend;
+}
+
 CompressionReport compressAll(const std::vector<std::shared_ptr<Recording>>& recordings,
+                              const CompressionSelection& selection,
                               const CompressionOptions& options, CompressionOutput& output) {
   CompressionReport report;
   for (const auto& recording : recordings) {
-    CompressionTrial trial(recording->camera(), options);
+    const auto source = makeCompressionSource(recording, selection, frontendOf(options));
+    CompressionTrial trial(source->camera(), options);
     ProgressBar progress("compress " + recording->robot(), recording->size());
-    for (std::size_t index = 0; std::optional<RgbdFrame> frame = recording->next(); ++index) {
-      const cv::Mat color = recording->color();
-      if (options.texture.format == TextureFormat::kColor) frame->color = toRgb8(color);
-      CompressedFrame compressed = trial.compress(*frame, recording->trueDepth());
+    std::size_t images_read = 0;
+    for (std::size_t index = 0; std::optional<CompressionItem> item = source->next(); ++index) {
+      CompressedFrame compressed = trial.compress(*item);
       compressed.robot = recording->robot();
       report.add(compressed);
-      output.write(index, *frame, color, compressed);
-      progress.advance();
+      output.write(index, *item, compressed);
+      for (; images_read < source->imagesRead(); ++images_read) progress.advance();
     }
   }
   return report;
@@ -145,7 +174,8 @@ int compress(const ParsedFlags& flags) {
       openRecordings(inputs, readSequenceFlags(flags),
                      [](const std::string& text) { std::cerr << "compress: " << text << '\n'; });
   CompressionOutput output(flags);
-  const CompressionReport report = compressAll(recordings, options, output);
+  const CompressionReport report =
+      compressAll(recordings, readSelection(flags, options), options, output);
   output.close();
   if (flags["json"].as<bool>()) {
     std::cout << report.json().dump(2) << '\n';

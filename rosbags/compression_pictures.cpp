@@ -109,11 +109,11 @@ cv::Mat drawTexture(const KeyframeTexture& texture, const Image<float>& restored
   return picture;
 }
 
-void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::Mat& color,
+void writePictures(const std::string& prefix, const CompressionItem& item,
                    const CompressedFrame& compressed) {
   writePicture(prefix + "_depth.png", drawDepth(compressed.depth));
-  writePicture(prefix + "_error.png", drawError(frame.depth, compressed.depth));
-  const cv::Mat background = color.empty() ? greyBackground(frame.grey) : color;
+  writePicture(prefix + "_error.png", drawError(item.frame.depth, compressed.depth));
+  const cv::Mat background = item.color.empty() ? greyBackground(item.frame.grey) : item.color;
   writePicture(prefix + "_tiles.png", drawTiles(background, compressed.cloud));
   if (compressed.texture.bytes.empty()) return;
   writePicture(prefix + "_texture.png", drawTexture(compressed.texture, compressed.depth));

@@ -26,9 +26,9 @@ namespace planecloud {
 [[nodiscard]] cv::Mat drawTexture(const KeyframeTexture& texture, const Image<float>& restored);
 
 /// Writes <prefix>_depth.png, <prefix>_error.png, <prefix>_tiles.png and, where there is texture,
-/// <prefix>_texture.png; `color` empty: tiles over the grey image. Throws std::runtime_error naming
-/// the file that cannot be written.
-void writePictures(const std::string& prefix, const RgbdFrame& frame, const cv::Mat& color,
+/// <prefix>_texture.png; tiles over the grey image where there is no colour. Throws
+/// std::runtime_error naming the file that cannot be written.
+void writePictures(const std::string& prefix, const CompressionItem& item,
                    const CompressedFrame& compressed);
 
 }  // namespace planecloud

@@ -25,8 +25,6 @@ struct Mean {
 
 void measureFit(const Image<float>& depth, const Camera& camera, CompressedFrame& result) {
   Mean distance, difference;
-  std::size_t valid = 0;
-  for (const float z : depth) valid += hasDepth(z) ? 1 : 0;
   for (const PlanarTile& tile : result.cloud.tiles) {
     const Eigen::Vector4d plane = tile.plane();
     for (int y = tile.rect.y; y < tile.rect.y + tile.rect.height; ++y) {
@@ -39,10 +37,19 @@ void measureFit(const Image<float>& depth, const Camera& camera, CompressedFrame
       }
     }
   }
-  result.coverage =
-      valid > 0 ? static_cast<double>(distance.count) / static_cast<double>(valid) : 0.0;
   result.point_plane_error = distance.value();
   result.depth_error = difference.value();
+}
+
+/// Share of the pixels with depth where planes have one, too.
+double coverageOf(const Image<float>& depth, const Image<float>& restored) {
+  Mean covered;
+  for (int y = 0; y < depth.height(); ++y) {
+    for (int x = 0; x < depth.width(); ++x) {
+      if (hasDepth(depth(x, y))) covered.add(hasDepth(restored(x, y)) ? 1.0 : 0.0);
+    }
+  }
+  return covered.value();
 }
 
 TrueErrors measureTruth(const Image<float>& depth, const Image<float>& true_depth,
@@ -71,8 +78,8 @@ CompressionTrial::CompressionTrial(const CameraIntrinsics& camera,
   options_.texture.check();
 }
 
-CompressedFrame CompressionTrial::compress(const RgbdFrame& frame,
-                                           const std::optional<Image<float>>& true_depth) {
+CompressedFrame CompressionTrial::compress(const CompressionItem& item) {
+  const RgbdFrame& frame = item.frame;
   CompressedFrame result;
   result.stamp = frame.stamp;
   FitBudget budget = FitBudget::fromNow(options_.plane_fit.time_budget, &FitBudget::Clock::now);
@@ -95,8 +102,10 @@ CompressedFrame CompressionTrial::compress(const RgbdFrame& frame,
   result.planes = result.cloud.tiles.size();
   result.depth = reconstructDepth(result.cloud, *camera_);
   measureFit(frame.depth, *camera_, result);
-  if (true_depth) {
-    result.truth = measureTruth(frame.depth, *true_depth, *camera_, result.depth);
+  const Image<float>& sensed = item.raw_depth ? *item.raw_depth : frame.depth;
+  result.coverage = coverageOf(sensed, result.depth);
+  if (item.true_depth) {
+    result.truth = measureTruth(sensed, *item.true_depth, *camera_, result.depth);
   }
   return result;
 }

@@ -11,7 +11,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
-#include "planecloud_slam/rosbags/recording.h"
+#include "planecloud_slam/rosbags/compression_source.h"
 
 namespace planecloud {
 
@@ -39,7 +39,7 @@ struct CompressedFrame {
   std::size_t bytes = 0;            ///< of the coded planes and the texture
   std::size_t texture_bytes = 0;    ///< of the texture
   std::size_t planes = 0;           ///< restored
-  double coverage = 0.0;            ///< share of the pixels with depth that have a plane
+  double coverage = 0.0;            ///< share of the sensor's depths that have a plane
   double point_plane_error = 0.0;   ///< mean distance of the covered points to their planes [m]
   double depth_error = 0.0;         ///< mean difference of their depth [m]
   std::optional<TrueErrors> truth;  ///< only of the built-in world
@@ -55,9 +55,7 @@ class CompressionTrial {
   /// Throws std::invalid_argument when options or camera fail their check.
   CompressionTrial(const CameraIntrinsics& camera, const CompressionOptions& options);
 
-  /// `true_depth`: exact depth [m], NaN: none.
-  [[nodiscard]] CompressedFrame compress(const RgbdFrame& frame,
-                                         const std::optional<Image<float>>& true_depth);
+  [[nodiscard]] CompressedFrame compress(const CompressionItem& item);
 
  private:
   std::shared_ptr<const Camera> camera_;
