@@ -150,7 +150,11 @@ void FrontendNode::fitKeyframes() {
       known_changes = changes;
       compressor.setOptions(options.frontend);
     }
-    if (task->keyframe) fitKeyframe(compressor, *task);
+    try {
+      if (task->keyframe) fitKeyframe(compressor, *task);
+    } catch (const std::exception& error) {
+      ROS_ERROR_STREAM("keyframe not sent: " << error.what());
+    }
     if (task->finished) task->finished->set_value();
   }
 }
@@ -158,6 +162,7 @@ void FrontendNode::fitKeyframes() {
 void FrontendNode::fitKeyframe(KeyframeCompressor& compressor, FittingTask& task) {
   const ros::WallTime start = ros::WallTime::now();
   const Eigen::Isometry3d T_visual_camera = task.keyframe->keyframe.T_odom_camera;
+  task.keyframe->keyframe.planes.camera = task.keyframe->camera;
   const KeyframeBudget budget{
       &FitBudget::Clock::now,
       sender_.keyframeAllowance(task.keyframe->keyframe, task.camera_frame)};
@@ -170,13 +175,9 @@ void FrontendNode::fitKeyframe(KeyframeCompressor& compressor, FittingTask& task
 
 void FrontendNode::sendKeyframe(Keyframe keyframe, const std::string& camera_frame) {
   const std::size_t bytes = keyframe.planes.bytes.size() + keyframe.texture.bytes.size();
-  try {
-    sender_.send(std::move(keyframe), camera_frame);
-    ++counters_.keyframes;
-    counters_.bytes += bytes;
-  } catch (const std::exception& error) {
-    ROS_ERROR_STREAM("keyframe not sent: " << error.what());
-  }
+  sender_.send(std::move(keyframe), camera_frame);
+  ++counters_.keyframes;
+  counters_.bytes += bytes;
 }
 
 void FrontendNode::previewFrames() {
