@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planecloud_slam/backend_node/backend_options.h"
+#include "planecloud_slam/backend_node/map_coloring.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
 
 namespace planecloud {
@@ -23,6 +24,7 @@ struct BackendNodeOptions {
   double cloud_resolution = 0.05;  ///< grid of `map_cloud` [m], [0.005, 1]
   double max_depth = 6.0;          ///< tiles beyond are not shown [m], [0.5, 50]
   double max_height = 1.2;         ///< tiles higher above their keyframe are not shown [m], [0, 50]
+  MapColoring map_coloring = MapColoring::kRobot;  ///< of `plane_map` and `map_cloud`
   BackendOptions backend;
 
   template <typename Self, typename Visit>
@@ -37,6 +39,7 @@ struct BackendNodeOptions {
     visit("cloud_resolution", self.cloud_resolution);
     visit("max_depth", self.max_depth);
     visit("max_height", self.max_height);
+    visit("map_coloring", self.map_coloring);
     BackendOptions::fields(self.backend, visit);
   }
   /// Throws std::invalid_argument naming key, value and range.

@@ -35,18 +35,21 @@ const Camera& MapCloudBuilder::cameraOf(const CameraIntrinsics& intrinsics) {
   return *camera_;
 }
 
-const MapCloudBuilder::Cloud& MapCloudBuilder::cloudOf(const MapKeyframe& keyframe) {
+const MapCloudBuilder::KeyframeCloud& MapCloudBuilder::cloudOf(const MapKeyframe& keyframe) {
   const auto [entry, is_new] = clouds_.try_emplace(keyframe.id);
   if (!is_new) return entry->second;
   Cloud cloud;
   const PlaneCloud& planes = *keyframe.planes;
+  const KeyframeColors colors =
+      coloring_ == MapColoring::kTexture ? KeyframeColors(*keyframe.keyframe) : KeyframeColors();
   for (const Eigen::Vector3f& point :
        reconstructPoints(planes, cameraOf(planes.camera), kPixelStep)) {
-    pcl::PointXYZRGB colored;
+    const Rgb8 color = colors.at(point.cast<double>(), {});
+    pcl::PointXYZRGB colored(color.r, color.g, color.b);
     colored.getVector3fMap() = point;
     cloud.push_back(colored);
   }
-  entry->second = thinOut(cloud, resolution_);
+  entry->second = {thinOut(cloud, resolution_), !colors.empty()};
   return entry->second;
 }
 
@@ -59,9 +62,10 @@ sensor_msgs::PointCloud2 MapCloudBuilder::build(const MapSnapshot& snapshot,
     if (node.component != 0) continue;
     const RobotColor& color = colors.at(node.keyframe->id.robot);
     Cloud cloud;
-    pcl::transformPointCloud(cloudOf(*node.keyframe), cloud,
-                             node.T_map_camera.matrix().cast<float>().eval());
+    const KeyframeCloud& known = cloudOf(*node.keyframe);
+    pcl::transformPointCloud(known.points, cloud, node.T_map_camera.matrix().cast<float>().eval());
     for (pcl::PointXYZRGB& point : cloud) {
+      if (known.has_texture) break;
       point.r = color.r;
       point.g = color.g;
       point.b = color.b;

@@ -9,6 +9,7 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -51,20 +52,39 @@ std::string edgeText(const GraphEdge& edge, const std::map<KeyframeId, std::size
   return text + "\n";
 }
 
+/// Side of the patches that tiles are cut into for texture [px].
+constexpr int kTexturedPatch = 16;
+
+/// The tile, cut into patches of at most `side` pixels.
+std::vector<PlanarTile> cut(const PlanarTile& tile, int side) {
+  std::vector<PlanarTile> patches;
+  for (int y = 0; y < tile.rect.height; y += side) {
+    for (int x = 0; x < tile.rect.width; x += side) {
+      PlanarTile patch = tile;
+      patch.rect = {tile.rect.x + x, tile.rect.y + y, std::min(side, tile.rect.width - x),
+                    std::min(side, tile.rect.height - y)};
+      patches.push_back(patch);
+    }
+  }
+  return patches;
+}
+
 class PlaneMesh {
  public:
+  explicit PlaneMesh(MapColoring coloring) : coloring_(coloring) {}
+
   void add(const MapSnapshot::Node& node, const RobotColor& color) {
     const PlaneCloud& planes = *node.keyframe->planes;
+    const KeyframeColors colors = coloring_ == MapColoring::kTexture
+                                      ? KeyframeColors(*node.keyframe->keyframe)
+                                      : KeyframeColors();
     for (const PlanarTile& tile : planes.tiles) {
-      const auto corners = tileCorners(tile, planes.camera);
-      if (!corners) continue;
-      pcl::Vertices quadrilateral;
-      for (const std::size_t i : {0, 3, 2, 1}) {  // counter-clockwise seen from the camera
-        quadrilateral.vertices.push_back(
-            static_cast<decltype(quadrilateral.vertices)::value_type>(vertices_.size()));
-        vertices_.push_back(vertexAt(node.T_map_camera * (*corners)[i], color));
+      const int side =
+          colors.empty() ? std::max(tile.rect.width, tile.rect.height) : kTexturedPatch;
+      for (const PlanarTile& patch : cut(tile, side)) {
+        const auto corners = tileCorners(patch, planes.camera);
+        if (corners) addQuadrilateral(*corners, node.T_map_camera, {colors, color});
       }
-      mesh_.polygons.push_back(std::move(quadrilateral));
     }
   }
 
@@ -76,12 +96,30 @@ class PlaneMesh {
   }
 
  private:
+  struct Paint {
+    const KeyframeColors& texture;
+    const RobotColor& robot;
+  };
+
+  void addQuadrilateral(const std::array<Eigen::Vector3d, 4>& corners,
+                        const Eigen::Isometry3d& T_map_camera, const Paint& paint) {
+    pcl::Vertices quadrilateral;
+    for (const std::size_t i : {0, 3, 2, 1}) {  // counter-clockwise seen from the camera
+      quadrilateral.vertices.push_back(
+          static_cast<decltype(quadrilateral.vertices)::value_type>(vertices_.size()));
+      vertices_.push_back(
+          vertexAt(T_map_camera * corners[i], paint.texture.at(corners[i], paint.robot)));
+    }
+    mesh_.polygons.push_back(std::move(quadrilateral));
+  }
+
   static pcl::PointXYZRGB vertexAt(const Eigen::Vector3d& point, const RobotColor& color) {
     pcl::PointXYZRGB vertex(color.r, color.g, color.b);
     vertex.getVector3fMap() = point.cast<float>();
     return vertex;
   }
 
+  const MapColoring coloring_;
   pcl::PointCloud<pcl::PointXYZRGB> vertices_;
   pcl::PolygonMesh mesh_;
 };
@@ -90,6 +128,12 @@ class PlaneMesh {
 std::string fileName(std::string robot) {
   std::replace(robot.begin(), robot.end(), '/', '_');
   return robot;
+}
+
+bool hasTexture(const MapSnapshot& snapshot) {
+  return std::any_of(snapshot.nodes.begin(), snapshot.nodes.end(), [](const auto& node) {
+    return !node.keyframe->keyframe->texture.bytes.empty();
+  });
 }
 
 void writeText(const std::string& path, const std::string& text) {
@@ -141,9 +185,9 @@ std::string g2oText(const MapSnapshot& snapshot) {
   return text;
 }
 
-void writePlaneMap(const std::string& path, const MapSnapshot& snapshot) {
+void writePlaneMap(const std::string& path, const MapSnapshot& snapshot, MapColoring coloring) {
   const std::map<std::string, RobotColor> colors = robotColors(snapshot);
-  PlaneMesh mesh;
+  PlaneMesh mesh(coloring);
   for (const MapSnapshot::Node& node : snapshot.nodes) {
     mesh.add(node, colors.at(node.keyframe->id.robot));
   }
@@ -154,6 +198,10 @@ std::vector<std::string> exportMap(const std::string& directory, const MapSnapsh
   std::vector<std::string> paths{directory + "/map.ply", directory + "/graph.g2o"};
   writeText(paths[1], g2oText(snapshot));
   writePlaneMap(paths[0], snapshot);
+  if (hasTexture(snapshot)) {
+    paths.push_back(directory + "/map_textured.ply");
+    writePlaneMap(paths.back(), snapshot, MapColoring::kTexture);
+  }
   for (const auto& [robot, color] : robotColors(snapshot)) {
     paths.push_back(directory + "/" + fileName(robot) + "_keyframes.txt");
     writeText(paths.back(), trajectoryText(snapshot, robot));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "planecloud_slam/backend_node/keyframe_colors.h"
 #include "planecloud_slam/backend_node/map_snapshot.h"
 
 namespace planecloud {
@@ -28,11 +29,14 @@ namespace planecloud {
 [[nodiscard]] std::string g2oText(const MapSnapshot& snapshot);
 
 /// Writes the plane map as binary PLY: a quadrilateral per tile, corners in the map's frame [m],
-/// coloured by robot. Throws std::runtime_error when the file cannot be written.
-void writePlaneMap(const std::string& path, const MapSnapshot& snapshot);
+/// coloured by robot or, cut into smaller ones, with what the cameras saw. Throws
+/// std::runtime_error when the file cannot be written.
+void writePlaneMap(const std::string& path, const MapSnapshot& snapshot,
+                   MapColoring coloring = MapColoring::kRobot);
 
-/// Writes `map.ply`, `<robot>_keyframes.txt` for each robot and `graph.g2o` into an existing
-/// directory. Returns the paths. Throws std::runtime_error naming the file that cannot be written.
+/// Writes `map.ply`, `map_textured.ply` when there is texture, `<robot>_keyframes.txt` for each
+/// robot and `graph.g2o` into an existing directory. Returns the paths. Throws std::runtime_error
+/// naming the file that cannot be written.
 std::vector<std::string> exportMap(const std::string& directory, const MapSnapshot& snapshot);
 
 }  // namespace planecloud

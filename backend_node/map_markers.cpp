@@ -152,6 +152,9 @@ visualization_msgs::Marker PlaneMapMarkers::makeMarker(const MapSnapshot::Node& 
                                                        const RobotColor& color) const {
   const std_msgs::ColorRGBA robot_color =
       makeColor(color, node.component == 0 ? kJoinedAlpha : kSeparateAlpha);
+  const KeyframeColors texture = view_.coloring == MapColoring::kTexture
+                                     ? KeyframeColors(*node.keyframe->keyframe)
+                                     : KeyframeColors();
   const std::vector<geometry_msgs::Point> corners =
       tileTriangles(*node.keyframe->planes, view_.max_depth);
   visualization_msgs::Marker marker = makeTriangleMarker({}, robot_color);
@@ -160,8 +163,10 @@ visualization_msgs::Marker PlaneMapMarkers::makeMarker(const MapSnapshot::Node& 
     if (!isShown(node, patch, view_)) continue;
     marker.points.insert(marker.points.end(), patch.points, patch.points + 6);
     // One for each triangle: rviz then leaves the lighting to us and shows both sides of a wall.
-    marker.colors.insert(marker.colors.end(), 2,
-                         shade(robot_color, node.T_map_camera.linear() * patch.normal));
+    const std_msgs::ColorRGBA patch_color =
+        texture.empty() ? shade(robot_color, node.T_map_camera.linear() * patch.normal)
+                        : makeColor(texture.at(patch.centre, color), robot_color.a);
+    marker.colors.insert(marker.colors.end(), 2, patch_color);
   }
   if (marker.points.empty()) marker.action = visualization_msgs::Marker::DELETE;
   marker.pose = toPoseMessage(node.T_map_camera);

@@ -10,6 +10,7 @@
 #include <map>
 #include <string>
 
+#include "planecloud_slam/backend_node/keyframe_colors.h"
 #include "planecloud_slam/backend_node/map_snapshot.h"
 #include "planecloud_slam/backend_node/robot_colors.h"
 
@@ -19,10 +20,11 @@ namespace planecloud {
 struct PlaneMapView {
   double max_depth = 6.0;   ///< tiles that reach further from their keyframe are left out [m]
   double max_height = 1.2;  ///< and those higher above it: ceilings hide the rest [m]
+  MapColoring coloring = MapColoring::kRobot;
 };
 
-/// The plane map for rviz, a marker for each keyframe, coloured by robot. Remembers what it has
-/// made, so that only what changed travels again.
+/// The plane map for rviz, a marker for each keyframe, coloured by robot or texture. Remembers what
+/// it has made, so that only what changed travels again.
 class PlaneMapMarkers {
  public:
   explicit PlaneMapMarkers(const PlaneMapView& view) : view_(view) {}

@@ -23,8 +23,8 @@ std::string frameOfComponent(const std::string& map_frame, int component) {
 MapPublisher::MapPublisher(const ros::NodeHandle& node, const BackendNodeOptions& options)
     : options_(options),
       node_(node),
-      plane_map_({options.max_depth, options.max_height}),
-      cloud_builder_(options.cloud_resolution),
+      plane_map_({options.max_depth, options.max_height, options.map_coloring}),
+      cloud_builder_(options.cloud_resolution, options.map_coloring),
       snapshots_(1) {
   const auto on_new = [this](const ros::SingleSubscriberPublisher&) { onNewSubscriber(); };
   plane_map_publisher_ =

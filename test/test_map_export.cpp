@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -26,6 +28,7 @@ MapSnapshot::Node nodeOf(const std::string& robot, int number, const Eigen::Isom
   keyframe->id = {robot, 1, static_cast<std::uint32_t>(number)};
   keyframe->stamp = 1.25 + number;
   keyframe->planes = std::make_shared<const PlaneCloud>(makeRoom().view(T, 0.0, 1));
+  keyframe->keyframe = std::make_shared<const Keyframe>();
   return {std::move(keyframe), T, 0};
 }
 
@@ -192,6 +195,26 @@ TEST(ExportMap, WritesAMeshThatReadsBackInTheRobotsColours) {
     EXPECT_LT(std::abs(position.x()), 2.6);
     EXPECT_LT(std::abs(position.y()), 2.1);
   }
+}
+
+TEST(ExportMap, PaintsWhatTheCamerasSaw) {
+  const TemporaryFolder folder;
+  MapSnapshot map = smallMap();
+  auto textured = std::make_shared<MapKeyframe>(*map.nodes[0].keyframe);
+  auto received = std::make_shared<Keyframe>();
+  received->planes.camera = textured->planes->camera;
+  received->texture.format = "jpeg-color";
+  cv::imencode(".jpg", cv::Mat(24, 32, CV_8UC3, cv::Scalar(0, 200, 0)), received->texture.bytes);
+  textured->keyframe = received;
+  map.nodes[0].keyframe = textured;
+  const std::vector<std::string> paths = exportMap(folder.path(), map);
+  const auto path = std::find(paths.begin(), paths.end(), folder.path() + "/map_textured.ply");
+  ASSERT_NE(path, paths.end());
+  const Mesh mesh = readMesh(*path);
+  EXPECT_GT(mesh.faces, readMesh(paths[0]).faces) << "textured tiles are cut into patches";
+  EXPECT_NEAR(mesh.colors.front().g, 200, 5);
+  EXPECT_NEAR(mesh.colors.front().r, 0, 5);
+  EXPECT_EQ(mesh.colors.back().g, robotColors(map).at("b").g) << "b has no texture";
 }
 
 TEST(ExportMap, SaysWhichFileItCannotWrite) {

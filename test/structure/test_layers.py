@@ -37,7 +37,8 @@ ALLOWED = {  # part: (libraries, components)
     "plane_fit": (CORE | {"SIMD"}, {"plane_fit"}),
     "icap": (CORE | {"nanoflann"}, {"plane_fit", "icap"}),
     "frontend core": (CORE | {"OpenCV", "SIMD"}, {"plane_fit", "frontend_node"}),
-    "backend core": (CORE | {"Ceres", "SQLite", "PCL"}, {"plane_fit", "icap", "backend_node"}),
+    "backend core": (CORE | {"Ceres", "SQLite", "PCL", "OpenCV"},
+                     {"plane_fit", "icap", "backend_node"}),
     "planecloud_msgs": (CORE | {"ROS", "Boost"}, {"plane_fit", "planecloud_msgs"}),
     "frontend node": (CORE | {"OpenCV", "ROS", "Boost", "image_transport", "PCL"},
                       {"plane_fit", "frontend_node", "planecloud_msgs"}),
@@ -109,8 +110,9 @@ class Layers(unittest.TestCase):
         self.assertEqual([], self.violations(
             lambda path, part, include: library_of(include) == "Ceres" and path.suffix != ".cpp"))
 
-    def test_one_file_knows_how_maps_are_stored_and_one_how_they_are_exported(self):
-        homes = {"SQLite": "map_store.cpp", "PCL": "map_export.cpp"}
+    def test_one_file_knows_how_maps_are_stored_one_how_they_are_exported_and_one_how_jpeg_is_read(self):
+        homes = {"SQLite": "map_store.cpp", "PCL": "map_export.cpp",
+                 "OpenCV": "keyframe_colors.cpp"}
         self.assertEqual([], self.violations(
             lambda path, part, include: part == "backend core"
             and path.name != homes.get(library_of(include), path.name)))
