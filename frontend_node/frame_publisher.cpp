@@ -27,6 +27,12 @@ std_msgs::ColorRGBA previewColor() {
   return color;
 }
 
+/// A covariance in the tangent space at `source` as one at `target`.
+Matrix6d transformed(const Matrix6d& covariance, const Eigen::Isometry3d& T_target_source) {
+  const Matrix6d to_target = adjoint(T_target_source);
+  return to_target * covariance * to_target.transpose();
+}
+
 }  // namespace
 
 VisualOdometryPublisher::VisualOdometryPublisher(ros::NodeHandle node,
@@ -39,7 +45,7 @@ VisualOdometryPublisher::VisualOdometryPublisher(ros::NodeHandle node,
       publisher_(node.advertise<nav_msgs::Odometry>("visual_odom", 50)) {}
 
 void VisualOdometryPublisher::publish(const TrackedFrame& tracked) {
-  if (tracked.result.status == TrackingStatus::kLost) return;
+  const Matrix6d at_camera = covariance_.update(tracked.result);
   findMount(tracked.camera_frame);
   Eigen::Isometry3d T_odom_child = tracked.result.T_odom_camera;
   if (T_camera_base_) T_odom_child = T_odom_child * *T_camera_base_;
@@ -49,8 +55,13 @@ void VisualOdometryPublisher::publish(const TrackedFrame& tracked) {
   odometry.header.frame_id = odom_frame_;
   odometry.child_frame_id = T_camera_base_ ? base_frame_ : tracked.camera_frame;
   odometry.pose.pose = toPoseMessage(T_odom_child);
+  const Matrix6d at_child =
+      T_camera_base_ ? transformed(at_camera, T_camera_base_->inverse()) : at_camera;
+  const Matrix6d along_odom = transformed(at_child, Eigen::Isometry3d(T_odom_child.linear()));
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(odometry.pose.covariance.data()) =
+      along_odom;
   publisher_.publish(odometry);
-  if (!publish_tf_) return;
+  if (!publish_tf_ || tracked.result.status == TrackingStatus::kLost) return;
 
   geometry_msgs::TransformStamped transform;
   transform.header = odometry.header;

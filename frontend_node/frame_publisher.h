@@ -12,11 +12,13 @@
 #include "planecloud_slam/frontend_node/frame_tracker.h"
 #include "planecloud_slam/frontend_node/frontend_node_options.h"
 #include "planecloud_slam/frontend_node/keyframe_compressor.h"
+#include "planecloud_slam/frontend_node/odometry_covariance.h"
 #include "planecloud_slam/frontend_node/odometry_source.h"
 
 namespace planecloud {
 
-/// Publishes what live frames give: `visual_odom`, tf if asked to. For one thread.
+/// Publishes what live frames give: `visual_odom` with its covariance, tf if asked to. Lost frames
+/// have the last known pose and the covariance of what is unknown, and no tf. For one thread.
 class VisualOdometryPublisher {
  public:
   /// `odometry` must outlive the publisher.
@@ -34,6 +36,7 @@ class VisualOdometryPublisher {
   const OdometrySource& odometry_;
   std::string camera_frame_;
   std::optional<Eigen::Isometry3d> T_camera_base_;  ///< none: the camera stands for the base
+  OdometryCovariance covariance_;
   ros::Publisher publisher_;
   tf2_ros::TransformBroadcaster broadcaster_;
 };

@@ -54,7 +54,8 @@ TrackedFrame FrameTracker::track(const InputFrame& input, const ImageReading& re
     is_placed_ = false;
   }
   if (!is_placed_) placeSegment(tracked.frame.stamp);
-  tracked.result = frontend_->track(tracked.frame);
+  tracked.result = frontend_->track(tracked.frame,
+                                    odometry_.findWheelMotion(camera_frame_, tracked.frame.stamp));
   return tracked;
 }
 
@@ -80,6 +81,11 @@ void FrameTracker::placeSegment(double stamp) {
 
 std::vector<CompletedKeyframe> FrameTracker::takeCompleted() {
   return frontend_ ? frontend_->takeCompleted() : std::vector<CompletedKeyframe>();
+}
+
+void FrameTracker::setKeyframeOptions(const KeyframeSelectorOptions& options) {
+  options_.keyframe = options;
+  if (frontend_) frontend_->setKeyframeOptions(options);
 }
 
 void FrameTracker::finish() {

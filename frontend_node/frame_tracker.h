@@ -44,6 +44,9 @@ class FrameTracker {
   /// Completes the open keyframe.
   void finish();
 
+  /// See Frontend::setKeyframeOptions.
+  void setKeyframeOptions(const KeyframeSelectorOptions& options);
+
   /// tf frame of the last camera tracked.
   [[nodiscard]] const std::string& cameraFrame() const { return camera_frame_; }
 
@@ -51,7 +54,7 @@ class FrameTracker {
   void useCamera(const CameraIntrinsics& camera);
   void placeSegment(double stamp);
 
-  const FrontendOptions options_;
+  FrontendOptions options_;
   const std::string robot_;
   const std::uint64_t session_;
   OdometrySource& odometry_;

@@ -73,10 +73,15 @@ class Frontend::Impl {
     return completed;
   }
 
+  void setKeyframeOptions(const KeyframeSelectorOptions& options) {
+    session_.setKeyframeOptions(options);
+    options_.keyframe = options;
+  }
+
   TrackingSession& session() { return session_; }
 
  private:
-  const FrontendOptions options_;
+  FrontendOptions options_;
   const CameraIntrinsics camera_;  ///< without distortion
   std::optional<Rectifier> rectifier_;
   TrackingSession session_;
@@ -103,6 +108,10 @@ void Frontend::finish() { impl_->session().endSegment(); }
 void Frontend::startNewSegment() { impl_->session().endSegment(); }
 
 void Frontend::changeCamera(const CameraIntrinsics& camera) { impl_ = impl_->continueWith(camera); }
+
+void Frontend::setKeyframeOptions(const KeyframeSelectorOptions& options) {
+  impl_->setKeyframeOptions(options);
+}
 
 void Frontend::setNextPose(const Eigen::Isometry3d& T_odom_camera) {
   impl_->session().setNextPose(T_odom_camera);

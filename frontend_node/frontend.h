@@ -54,7 +54,7 @@ struct CompletedKeyframe {
   Image<float> depth;  ///< [m], NaN: none; rectified, in `camera`
   Image<std::uint8_t> grey;
   CameraIntrinsics camera;
-  Image<Rgb8> color;  ///< may be empty
+  Image<Rgb8> color;    ///< may be empty
   HistoryTask history;  ///< what `KeyframeCompressor` aligns it with
 };
 
@@ -89,6 +89,9 @@ class Frontend {
   /// Goes on with another camera: ends the segment and keeps counting keyframes.
   /// Throws std::invalid_argument, and changes nothing, when `camera` fails its check.
   void changeCamera(const CameraIntrinsics& camera);
+
+  /// Goes on with other thresholds. Throws, and changes nothing, when they fail their check.
+  void setKeyframeOptions(const KeyframeSelectorOptions& options);
 
   /// Where the next segment begins, T_odom_camera of its first frame; else a levelled camera at
   /// the origin that looks along x, and after a loss the last known pose.

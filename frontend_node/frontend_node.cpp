@@ -108,9 +108,10 @@ void FrontendNode::trackFrames() {
 void FrontendNode::trackFrame(const InputFrame& input) {
   const ros::WallTime start = ros::WallTime::now();
   try {
-    const TextureFormat texture = live_options_.get().first.frontend.texture.format;
-    TrackedFrame tracked =
-        tracker_.track(input, {input_.isRectified(), texture == TextureFormat::kColor});
+    const FrontendOptions live = live_options_.get().first.frontend;
+    tracker_.setKeyframeOptions(live.keyframe);
+    TrackedFrame tracked = tracker_.track(
+        input, {input_.isRectified(), live.texture.format == TextureFormat::kColor});
     ++counters_.frames;
     counters_.track_time = seconds(start);
     reportLoss(tracked.result);
@@ -127,6 +128,10 @@ void FrontendNode::reportLoss(const FrameResult& result) {
   is_tracking_ = result.status != TrackingStatus::kLost;
   if (is_tracking_) {
     has_open_keyframe_ = true;
+    counters_.segments = result.segment + 1;
+    if (result.status != TrackingStatus::kRelocalised) return;
+    ++counters_.found;
+    ROS_INFO_STREAM("tracking found the camera again, at keyframe " << toString(result.reference));
     return;
   }
   ++counters_.lost;
@@ -226,6 +231,8 @@ void FrontendNode::publishDiagnostics() {
   status.add("frames", counters_.frames);
   status.add("frames dropped", counters_.dropped);
   status.add("frames lost", counters_.lost);
+  status.add("times found again", counters_.found);
+  status.add("segments", counters_.segments.load());
   status.add("frames unusable", counters_.unusable);
   status.add("tracking time [s]", counters_.track_time);
   status.add("fit time [s]", counters_.fit_time);

@@ -51,7 +51,9 @@ class FrontendNode {
     std::shared_ptr<std::promise<void>> finished;
   };
   struct Counters {
-    std::atomic<std::size_t> frames{0}, dropped{0}, lost{0}, unusable{0}, keyframes{0}, bytes{0};
+    std::atomic<std::size_t> frames{0}, dropped{0}, lost{0}, found{0}, unusable{0}, keyframes{0},
+        bytes{0};
+    std::atomic<int> segments{0};
     std::atomic<double> track_time{0.0}, fit_time{0.0};  ///< of the last one [s]
   };
 

@@ -39,6 +39,11 @@ void InputOptions::check() const {
 void FrontendNodeOptions::check() const {
   static_cast<void>(parseSession(session, 1));
   if (base_frame.empty()) throw std::invalid_argument("base_frame = : must be the name of a frame");
+  if (publish_odom_tf && !guess_frame.empty() && guess_frame == odom_frame) {
+    throw std::invalid_argument("guess_frame = " + guess_frame +
+                                ": must be the wheels' frame, not the one that publish_odom_tf "
+                                "fills with visual odometry");
+  }
   checkRange("tf_wait", tf_wait, 0.0, 5.0);
   checkRange("shutdown_timeout", shutdown_timeout, 0.0, 60.0);
   input.check();

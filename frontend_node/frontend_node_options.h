@@ -54,6 +54,9 @@ struct FrontendNodeOptions {
   std::string session;              ///< start of this run [ns]; empty: now
   std::string odom_frame = "odom";  ///< of the robot's base; empty: visual odometry alone
   std::string base_frame = "base_footprint";
+  /// tf frame in which the wheels carry the camera, such as `odom`: their motion is where tracking
+  /// begins to look, and what it must roughly agree with. Empty: none.
+  std::string guess_frame;
   bool publish_odom_tf = false;   ///< visual odometry as tf odom -> base
   double tf_wait = 0.2;           ///< longest wait for a keyframe's tf [s], [0, 5]
   double shutdown_timeout = 3.0;  ///< longest wait for acknowledgements at the end [s], [0, 60]
@@ -67,6 +70,7 @@ struct FrontendNodeOptions {
     visit("session", self.session);
     visit("odom_frame", self.odom_frame);
     visit("base_frame", self.base_frame);
+    visit("guess_frame", self.guess_frame);
     visit("publish_odom_tf", self.publish_odom_tf);
     visit("tf_wait", self.tf_wait);
     visit("shutdown_timeout", self.shutdown_timeout);

@@ -23,8 +23,8 @@ struct KeyframeBudget {
 };
 
 /// The fitting half of the frontend: turns a completed keyframe into what travels (plane cloud and
-/// texture under time and byte budgets, edges to the short-term history, appearance descriptor). One
-/// per thread.
+/// texture under time and byte budgets, edges to the short-term history, appearance descriptor).
+/// One per thread.
 class KeyframeCompressor {
  public:
   /// Throws std::invalid_argument when `options` fail their check.

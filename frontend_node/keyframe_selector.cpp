@@ -27,6 +27,11 @@ KeyframeSelector::KeyframeSelector(const KeyframeSelectorOptions& options) : opt
   options_.check();
 }
 
+void KeyframeSelector::setOptions(const KeyframeSelectorOptions& options) {
+  options.check();
+  options_ = options;
+}
+
 void KeyframeSelector::reset() {
   has_first_entropy_ = false;
   entropy_ratio_ = 1.0;

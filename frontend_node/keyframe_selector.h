@@ -36,6 +36,9 @@ class KeyframeSelector {
   /// Throws std::invalid_argument when `options` fail their check.
   explicit KeyframeSelector(const KeyframeSelectorOptions& options);
 
+  /// Goes on with other thresholds. Throws, and changes nothing, when they fail their check.
+  void setOptions(const KeyframeSelectorOptions& options);
+
   /// A new keyframe was opened: its first tracked frame will set the reference entropy.
   void reset();
 

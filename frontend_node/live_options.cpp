@@ -4,6 +4,7 @@
 
 #include <dynamic_reconfigure/server.h>
 #include <planecloud_slam/CodecConfig.h>
+#include <planecloud_slam/KeyframeConfig.h>
 #include <planecloud_slam/LinkConfig.h>
 #include <planecloud_slam/PlaneFitConfig.h>
 #include <planecloud_slam/TextureConfig.h>
@@ -15,6 +16,7 @@ namespace planecloud {
 namespace {
 
 using planecloud_slam::CodecConfig;
+using planecloud_slam::KeyframeConfig;
 using planecloud_slam::LinkConfig;
 using planecloud_slam::PlaneFitConfig;
 using planecloud_slam::TextureConfig;
@@ -32,6 +34,12 @@ void apply(PlaneFitConfig& config, QuadtreeFitterOptions& options) {
 
 void apply(CodecConfig& config, CodecOptions& options) {
   options.byte_budget = config.byte_budget = zeroOrAtLeast(config.byte_budget, 64);
+}
+
+void apply(KeyframeConfig& config, KeyframeSelectorOptions& options) {
+  options.max_translation = config.max_translation;
+  options.max_rotation = config.max_rotation;
+  options.min_entropy_ratio = config.min_entropy_ratio;
 }
 
 void apply(LinkConfig& config, LinkOptions& options) {
@@ -62,6 +70,7 @@ struct LiveOptions::Servers {
 
 LiveOptions::LiveOptions(const ros::NodeHandle& private_node, const FrontendNodeOptions& initial)
     : options_(initial), node_(private_node), servers_(std::make_unique<Servers>()) {
+  serve<KeyframeConfig>("keyframe", options_.frontend.keyframe);
   serve<PlaneFitConfig>("plane_fit", options_.frontend.plane_fit);
   serve<CodecConfig>("codec", options_.frontend.codec);
   serve<TextureConfig>("texture", options_.frontend.texture);

@@ -10,6 +10,7 @@ namespace planecloud {
 
 OdometrySource::OdometrySource(const FrontendNodeOptions& options)
     : odom_frame_(options.publish_odom_tf ? "" : options.odom_frame),
+      guess_frame_(options.guess_frame),
       base_frame_(options.base_frame),
       wait_(options.tf_wait),
       listener_(buffer_) {}
@@ -18,6 +19,15 @@ std::optional<Eigen::Isometry3d> OdometrySource::findOdomCamera(const std::strin
                                                                 double stamp) const {
   if (odom_frame_.empty() || !buffer_._frameExists(odom_frame_)) return std::nullopt;
   return find(odom_frame_, camera_frame, ros::Time(stamp));
+}
+
+std::optional<Eigen::Isometry3d> OdometrySource::findWheelMotion(const std::string& camera_frame,
+                                                                 double stamp) {
+  if (guess_frame_.empty() || !buffer_._frameExists(guess_frame_)) return std::nullopt;
+  const std::optional<Eigen::Isometry3d> T_guess_previous = T_guess_previous_;
+  T_guess_previous_ = find(guess_frame_, camera_frame, ros::Time(stamp));
+  if (!T_guess_previous || !T_guess_previous_) return std::nullopt;
+  return T_guess_previous->inverse() * *T_guess_previous_;
 }
 
 std::optional<Eigen::Isometry3d> OdometrySource::findBaseCamera(
@@ -53,6 +63,7 @@ Eigen::Isometry3d OdometrySource::keyframePose(const std::string& camera_frame, 
 
 void OdometrySource::clear() {
   buffer_.clear();
+  T_guess_previous_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
   T_odom_visual_.reset();
 }

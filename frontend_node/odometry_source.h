@@ -24,6 +24,10 @@ class OdometrySource {
   /// clock, if the frames exist at all.
   [[nodiscard]] std::optional<Eigen::Isometry3d> findOdomCamera(const std::string& camera_frame,
                                                                 double stamp) const;
+  /// Motion of the camera by the wheels, `T_previous_current`, from the frame asked for before to
+  /// the one at `stamp` [s]; none without `~guess_frame`, or where tf has not both. For one thread.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> findWheelMotion(const std::string& camera_frame,
+                                                                 double stamp);
   /// The camera's mount, tf's `base -> camera`.
   [[nodiscard]] std::optional<Eigen::Isometry3d> findBaseCamera(
       const std::string& camera_frame) const;
@@ -41,11 +45,13 @@ class OdometrySource {
                                                       const std::string& source,
                                                       const ros::Time& stamp) const;
 
-  const std::string odom_frame_;  ///< empty: visual odometry alone
+  const std::string odom_frame_;   ///< empty: visual odometry alone
+  const std::string guess_frame_;  ///< of the wheels; empty: none
   const std::string base_frame_;
   const double wait_;  ///< [s]
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
+  std::optional<Eigen::Isometry3d> T_guess_previous_;  ///< camera of the frame before
   std::mutex mutex_;
   std::optional<Eigen::Isometry3d> T_odom_visual_;
 };

@@ -32,6 +32,7 @@ class TrackingSession {
   /// Completes the open keyframe; the next frame opens a segment where this one ended.
   void endSegment();
   void setNextPose(const Eigen::Isometry3d& T_odom_camera) { T_odom_start_ = T_odom_camera; }
+  void setKeyframeOptions(const KeyframeSelectorOptions& options) { selector_.setOptions(options); }
   [[nodiscard]] std::vector<CompletedKeyframe> takeCompleted();
 
   [[nodiscard]] bool isTracking() const { return static_cast<bool>(reference_.view); }
