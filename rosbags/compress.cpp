@@ -56,7 +56,7 @@ ToolDescription describe() {
       "every", po::value<int>()->default_value(1), "take only each N-th image")(
       "max-images", po::value<int>()->default_value(0), "take at most so many, 0: all")(
       "pictures", po::value<std::string>()->value_name("DIR"),
-      "writes restored depth, error, tiles and texture of each image as PNG")(
+      "writes colour, depth, restored depth, error, tiles and texture of each image as PNG")(
       "json", po::bool_switch(), "print the figures as JSON")(
       "csv", po::value<std::string>()->value_name("F"), "writes a line of figures per image");
   tool.arguments = {"INPUT"};

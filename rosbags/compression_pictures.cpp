@@ -111,9 +111,11 @@ cv::Mat drawTexture(const KeyframeTexture& texture, const Image<float>& restored
 
 void writePictures(const std::string& prefix, const CompressionItem& item,
                    const CompressedFrame& compressed) {
+  const cv::Mat background = item.color.empty() ? greyBackground(item.frame.grey) : item.color;
+  writePicture(prefix + "_color.png", background);
+  writePicture(prefix + "_sensor.png", drawDepth(item.frame.depth));
   writePicture(prefix + "_depth.png", drawDepth(compressed.depth));
   writePicture(prefix + "_error.png", drawError(item.frame.depth, compressed.depth));
-  const cv::Mat background = item.color.empty() ? greyBackground(item.frame.grey) : item.color;
   writePicture(prefix + "_tiles.png", drawTiles(background, compressed.cloud));
   if (compressed.texture.bytes.empty()) return;
   writePicture(prefix + "_texture.png", drawTexture(compressed.texture, compressed.depth));

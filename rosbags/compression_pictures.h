@@ -25,9 +25,9 @@ namespace planecloud {
 /// The texture painted on the planes, seen from the camera that made them; black: no plane.
 [[nodiscard]] cv::Mat drawTexture(const KeyframeTexture& texture, const Image<float>& restored);
 
-/// Writes <prefix>_depth.png, <prefix>_error.png, <prefix>_tiles.png and, where there is texture,
-/// <prefix>_texture.png; tiles over the grey image where there is no colour. Throws
-/// std::runtime_error naming the file that cannot be written.
+/// Writes, each as <prefix>_<kind>.png, `color` and `sensor` (its depth), `depth` (the restored
+/// one), `error`, `tiles` and, where there is one, `texture`; tiles over the grey image where there
+/// is no colour. Throws std::runtime_error naming the file that cannot be written.
 void writePictures(const std::string& prefix, const CompressionItem& item,
                    const CompressedFrame& compressed);
 

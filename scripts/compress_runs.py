@@ -1,0 +1,46 @@
+# Copyright (c) 2026, the planecloud_slam authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs `compress` and reads what it measured, image by image."""
+
+import csv
+import pathlib
+import subprocess
+import tempfile
+
+import numpy
+
+COLUMNS = ("planes", "bytes", "raw_bytes", "coverage", "point_plane_mm", "depth_error_mm", "fit_ms",
+           "encode_ms")
+
+
+class Sequence:
+    """An input of `compress` and how much of it is taken."""
+
+    def __init__(self, path, name, every, images):
+        self.path, self.name = str(path), name
+        self._selection = ["--every", str(every), "--max-images", str(images)]
+
+    def compress(self, **flags):
+        """A column of numbers, one for each image, by its name; flags as in `compress --help`."""
+        with tempfile.TemporaryDirectory() as folder:
+            table = pathlib.Path(folder) / "images.csv"
+            self._run(["--csv", table], flags)
+            with table.open(encoding="utf-8") as lines:
+                rows = list(csv.DictReader(lines))
+        return {key: numpy.array([float(row[key]) for row in rows]) for key in COLUMNS}
+
+    def draw(self, folder, **flags):
+        """The pictures of the first image that is taken, by their kind."""
+        self._run(["--pictures", folder], flags)
+        first = sorted(pathlib.Path(folder).glob("*_tiles.png"))[0]
+        prefix = str(first)[:-len("tiles.png")]
+        return {path.stem.rsplit("_", 1)[-1]: path
+                for path in pathlib.Path(folder).glob(pathlib.Path(prefix).name + "*.png")}
+
+    def _run(self, arguments, flags):
+        command = ["rosrun", "planecloud_slam", "compress", self.path, *self._selection]
+        command += [str(argument) for argument in arguments]
+        for key, value in flags.items():
+            flag = "--" + key.replace("_", "-")
+            command += [flag] if value is True else [flag, str(value)]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
