@@ -18,6 +18,9 @@ struct BackendNodeOptions {
   std::string backend_id;  ///< unique among the backends a frontend hears; empty: the node's name
   std::string map_frame = "map";
   std::string odom_frame = "{robot}/odom";  ///< `{robot}` stands for the robot's name
+  /// Robots whose odometry frame it hangs on the map by tf, separated by spaces; empty: all. Where
+  /// every robot has a backend of its own, each names its own robot: a frame has one parent.
+  std::string tf_robots;
   double ack_period = 1.0;         ///< between acknowledgements when nothing arrives [s], [0.1, 60]
   double publish_period = 1.0;     ///< least time between two maps [s], [0.1, 60]
   double tf_period = 0.1;          ///< [s], [0.01, 1]
@@ -33,6 +36,7 @@ struct BackendNodeOptions {
     visit("backend_id", self.backend_id);
     visit("map_frame", self.map_frame);
     visit("odom_frame", self.odom_frame);
+    visit("tf_robots", self.tf_robots);
     visit("ack_period", self.ack_period);
     visit("publish_period", self.publish_period);
     visit("tf_period", self.tf_period);

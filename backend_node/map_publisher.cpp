@@ -105,8 +105,11 @@ void MapPublisher::updateTransforms(const MapSnapshot& snapshot) {
   for (const MapSnapshot::Node& node : snapshot.nodes) {
     newest[node.keyframe->id.robot] = &node;  // nodes are ordered by session, then number
   }
+  const std::vector<std::string> wanted = splitWords(options_.tf_robots);
   std::vector<geometry_msgs::TransformStamped> transforms;
   for (const auto& [robot, node] : newest) {
+    const bool is_wanted = std::find(wanted.begin(), wanted.end(), robot) != wanted.end();
+    if (!wanted.empty() && !is_wanted) continue;
     geometry_msgs::TransformStamped transform;
     transform.header.frame_id = frameOfComponent(options_.map_frame, node->component);
     transform.child_frame_id = frameOfRobot(options_.odom_frame, robot);

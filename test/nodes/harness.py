@@ -83,14 +83,16 @@ class Watch:
 class Node(Watch):
     """A node of the package in its own process."""
 
-    def __init__(self, kind, name, remappings=(), command=(), **parameters):
-        """`command`: what is put before, such as `ip netns exec NAME`."""
+    def __init__(self, kind, name, remappings=(), command=(), is_silent=False, **parameters):
+        """`command`: what is put before, such as `ip netns exec NAME`; `is_silent`: it has no
+        diagnostics to wait for."""
         super().__init__(f"/{name}")
         arguments = [f"__name:={name}", *remappings]
         arguments += [f"_{key}:={value}" for key, value in parameters.items()]
         self.process = subprocess.Popen(
             [*command, "rosrun", "planecloud_slam", kind, *arguments])
-        wait_for(lambda: self.values or not self.is_alive(), f"{name} runs")
+        if not is_silent:
+            wait_for(lambda: self.values or not self.is_alive(), f"{name} runs")
 
     def is_alive(self):
         return self.process.poll() is None
