@@ -4,19 +4,21 @@
 """Three robots with a backend each, all of which hear all frontends: each joins the three maps, and
 the maps agree."""
 
+import itertools
+import math
 import pathlib
 import tempfile
 import unittest
 
-import numpy
 import rospy
 import rostest
 from harness import Node, Watch, wait_for
 from planecloud_slam.srv import ExportMap
 
 ROBOTS = ("robot1", "robot2", "robot3")
-DISTANCE = 6.0  # of each robot [m]
-APART = 2.4  # where one starts after the other [m]
+DISTANCE = 3.6  # of each robot, the first one twice [m]
+SPACING = 0.3  # of keyframes [m]
+APART = 1.5  # where one starts after the other [m]
 
 
 def read_positions(folder):
@@ -32,13 +34,13 @@ def read_positions(folder):
 
 
 def largest_difference(a, b):
-    """Of two sets of positions [m], once the one is moved rigidly onto the other."""
-    keys = sorted(a)
-    left, right = (numpy.array([side[key] for key in keys]) for side in (a, b))
-    left, right = left - left.mean(axis=0), right - right.mean(axis=0)
-    u, _, v = numpy.linalg.svd(left.T @ right)
-    flip = numpy.diag([1.0, 1.0, numpy.sign(numpy.linalg.det(u @ v))])
-    return numpy.abs(left @ u @ flip @ v - right).max()
+    """Of the distances between keyframes in two maps [m]: each has a frame of its own."""
+    return max(abs(math.dist(a[first], a[second]) - math.dist(b[first], b[second]))
+               for first, second in itertools.combinations(sorted(a), 2))
+
+
+def keyframes_in(distance):
+    return int(distance / SPACING + 1e-6) + 1
 
 
 class Decentralised(unittest.TestCase):
@@ -50,20 +52,29 @@ class Decentralised(unittest.TestCase):
         for robot in self.robots:
             robot.stop()
 
+    def start_robot(self, i, **parameters):
+        robot = ROBOTS[i]
+        topics = [f"{topic}:=/{robot}/{topic}" for topic in ("keyframes", "keyframe_acks")]
+        self.robots.append(Node("synthetic_robot_node", f"synthetic_{robot}", topics,
+                                is_silent=True, robot=robot, seed=i + 1, **parameters))
+
+    def wait_for_keyframes(self, count):
+        for backend in self.backends:
+            backend.wait_for_value("keyframes", count, timeout=120)
+
     def test_the_maps_agree(self):
         for backend in self.backends:
             wait_for(lambda watch=backend: watch.values, f"{backend.name} runs")
-        for i, robot in enumerate(ROBOTS):
-            topics = [f"{topic}:=/{robot}/{topic}" for topic in ("keyframes", "keyframe_acks")]
-            hints = {"hint_robot": ROBOTS[0]} if i else {}
-            # robot1 drives the whole way, the others a part each: they meet through it alone.
-            self.robots.append(Node("synthetic_robot_node", f"synthetic_{robot}", topics,
-                                    is_silent=True, robot=robot, seed=i + 1, start=APART * i,
-                                    distance=DISTANCE * (2 if i == 0 else 1), **hints))
-        count = int(2 * DISTANCE / 0.3 + 1e-6) + 1 + 2 * (int(DISTANCE / 0.3 + 1e-6) + 1)
+        # robot1 drives the whole way, the others a part each: they meet through it alone.
+        self.start_robot(0, distance=2 * DISTANCE)
+        count = keyframes_in(2 * DISTANCE)
+        self.wait_for_keyframes(count)
+        for i in (1, 2):
+            self.start_robot(i, start=APART * i, distance=DISTANCE, hint_robot=ROBOTS[0])
+            count += keyframes_in(DISTANCE)
+        self.wait_for_keyframes(count)
         maps = []
         for robot, backend in zip(ROBOTS, self.backends):
-            backend.wait_for_value("keyframes", count, timeout=90)
             backend.wait_for_value("components", 1, timeout=30)
             self.assertTrue(backend.call("optimize").success)
             with tempfile.TemporaryDirectory() as folder:

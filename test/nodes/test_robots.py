@@ -65,8 +65,9 @@ class Robots(unittest.TestCase):
 
     def test_a_robot_that_starts_again(self):
         backend = self.start_backend(["ada"])
-        self.start_robot("ada", distance=6.0).stop()
+        first = self.start_robot("ada", distance=6.0)
         backend.wait_for_value("keyframes", keyframes_in(6.0), timeout=60)
+        first.stop()
         self.start_robot("ada", run=2, start=1.5, distance=4.5, seed=2, hint_robot="ada")
         backend.wait_for_value("keyframes", keyframes_in(6.0) + keyframes_in(4.5), timeout=60)
         backend.wait_for_value("keyframes refused", 0)
@@ -77,7 +78,7 @@ class Robots(unittest.TestCase):
         distance = ROUND + 5.0
         self.start_robot("ada", distance=distance, lost_at=50, hint_robot="ada", period=0.05)
         wait_for(lambda: backend.values.get("components") == "2", "the lost segment stays apart", 60)
-        backend.wait_for_value("keyframes", keyframes_in(distance), timeout=60)
+        backend.wait_for_value("keyframes", keyframes_in(distance), timeout=120)
         backend.wait_for_value("components", 1, timeout=30)
 
     def test_a_robot_that_is_silent_for_a_minute(self):
