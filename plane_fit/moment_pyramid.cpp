@@ -273,6 +273,14 @@ Eigen::Vector3d MomentPyramid::regress(const QuadtreeNode& node) const {
   return {alpha, beta, q / full.n - alpha * full.mean_u - beta * full.mean_v};
 }
 
+float MomentPyramid::meanSquare(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
+  const DepthSums& sums = level(node).depth[index(node)];
+  // Residuals of a regression are orthogonal to it.
+  const double explained = plane.cast<double>().dot(Eigen::Vector3d(sums.qu, sums.qv, sums.q));
+  const double mean = (sums.qq - explained) / level(node).counts[index(node)];
+  return static_cast<float>(std::max(0.0, mean));
+}
+
 ResidualSums MomentPyramid::residuals(const TileRect& rect, const Eigen::Vector3f& plane) const {
   const std::size_t first = offset(rect.x, rect.y);
   ResidualQuery query;

@@ -49,6 +49,8 @@ class MomentPyramid {
   [[nodiscard]] TileMoments moments(const QuadtreeNode& node) const;
   /// Regression of a node with count > 0 about `origin(node)`: (alpha, beta, gamma) [1/m].
   [[nodiscard]] Eigen::Vector3d regress(const QuadtreeNode& node) const;
+  /// Mean square [1/m^2] of the residuals of the node's regression `plane`, from the moments.
+  [[nodiscard]] float meanSquare(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
   /// Tangents (u, v) of the centre of the node's initial tile.
   [[nodiscard]] const Eigen::Vector2f& origin(const QuadtreeNode& node) const {
     const int root = (node.row >> node.level) * levels_[0].columns + (node.column >> node.level);

@@ -9,6 +9,7 @@
 
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 #include "planecloud_slam/plane_fit/tile_fitter.h"
+#include "planecloud_slam/plane_fit/tree_pruner.h"
 
 namespace planecloud {
 namespace {
@@ -63,7 +64,8 @@ class QuadtreeFitter::Impl {
       : camera_(std::move(camera)),
         options_(options),
         pyramid_(camera_, layout(options), vectorTileKernels()),
-        tile_fitter_(pyramid_, options) {}
+        tile_fitter_(pyramid_, options),
+        pruner_(pyramid_, tile_fitter_, options.lambda) {}
 
   template <typename Pixel>
   PlaneCloud fit(ImageView<Pixel> depth, const FitBudget& budget);
@@ -77,6 +79,7 @@ class QuadtreeFitter::Impl {
     return {options.initial_tile_width, options.initial_tile_height, options.min_tile};
   }
   void fitLevels(const BudgetMeter& meter, PlaneCloudStatistics& statistics);
+  void fitPruned(const BudgetMeter& meter, PlaneCloudStatistics& statistics);
   void pushRoots();
   void pushChildren(const QuadtreeNode& node);
   void accept(const QuadtreeNode& node, const TileFit& fit);
@@ -86,6 +89,7 @@ class QuadtreeFitter::Impl {
   QuadtreeFitterOptions options_;
   MomentPyramid pyramid_;
   TileFitter tile_fitter_;
+  TreePruner pruner_;
   std::vector<QuadtreeNode> queue_;  // the level being fitted
   std::vector<QuadtreeNode> next_;   // the level below
   std::vector<PlanarTile> tiles_;
@@ -107,7 +111,11 @@ PlaneCloud QuadtreeFitter::Impl::fit(ImageView<Pixel> depth, const FitBudget& bu
   statistics.stopped_by_time = !pyramid_.read(
       depth, budget.deadline ? std::function<bool()>([&] { return meter.timeIsUp(); }) : nullptr);
   if (!statistics.stopped_by_time) {
-    fitLevels(meter, statistics);
+    if (options_.lambda > 0.0) {
+      fitPruned(meter, statistics);
+    } else {
+      fitLevels(meter, statistics);
+    }
     statistics.coverage = covered_ / std::max(1.0, countValidPixels());
     statistics.depth_error = depth_sum_ / std::max(1.0, covered_);
     statistics.point_plane_error = point_plane_sum_ / std::max(1.0, covered_);
@@ -138,6 +146,20 @@ void QuadtreeFitter::Impl::fitLevels(const BudgetMeter& meter, PlaneCloudStatist
       accept(node, *fit);
     }
     queue_.swap(next_);
+  }
+}
+
+void QuadtreeFitter::Impl::fitPruned(const BudgetMeter& meter, PlaneCloudStatistics& statistics) {
+  bool late = false;
+  const auto is_late = [&] { return late = late || meter.timeIsUp(); };
+  const std::vector<QuadtreeNode>& nodes = pruner_.choose(is_late);
+  statistics.stopped_by_time = late;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    statistics.stopped_by_bytes = !meter.hasRoomFor(tiles_.size() + 1);
+    if (statistics.stopped_by_bytes) return;
+    // Errors are worth a pass over the pixels as long as there is time.
+    const bool estimated = late || (i % kTilesAtOnce == 0 && is_late());
+    accept(nodes[i], estimated ? tile_fitter_.estimate(nodes[i]) : tile_fitter_.measure(nodes[i]));
   }
 }
 

@@ -60,6 +60,7 @@ void QuadtreeFitterOptions::check() const {
   checkRange("plane_fit/tolerance", tolerance, 1e-5, 1.0);
   checkRange("plane_fit/min_fill", min_fill, 0.0, 1.0);
   checkRange("plane_fit/planarity_factor", planarity_factor, 0.0, 1000.0);
+  checkRange("plane_fit/lambda", lambda, 0.0, 1000.0);
   checkRange("plane_fit/time_budget", time_budget, 0.0, 10.0);
   checkRange("plane_fit/byte_budget", byte_budget, 0, 1 << 30);
 }

@@ -41,6 +41,10 @@ struct QuadtreeFitterOptions {
   /// The fourth corner may lie this many tolerances off the plane of the three others before the
   /// tile is subdivided unfitted; 0: no such check. [0, 1000]
   double planarity_factor = 8.0;
+  /// What a bit of the coded cloud must save: error in tolerances, summed over pixels. The tree is
+  /// pruned to the least distortion + lambda * bits, so that `tolerance` is what errors are counted
+  /// in, no bound. 0: the paper's rule, the largest tiles that obey the tolerance. [0, 1000]
+  double lambda = 6.0;
   double time_budget = 0.0;  ///< per keyframe [s], 0: none, [0, 10]
   int byte_budget = 0;       ///< per keyframe [B], 0: none, [0, 2^30]
 
@@ -55,6 +59,7 @@ struct QuadtreeFitterOptions {
     visit("corner_check", self.corner_check);
     visit("min_fill", self.min_fill);
     visit("planarity_factor", self.planarity_factor);
+    visit("lambda", self.lambda);
     visit("time_budget", self.time_budget);
     visit("byte_budget", self.byte_budget);
   }

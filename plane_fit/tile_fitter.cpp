@@ -13,6 +13,8 @@ namespace {
 constexpr float kMinInverseDepth = 1.0F / 64.0F;
 /// Rows of a tile whose error is summed before the tile can be given up.
 constexpr int kRowsAtOnce = 16;
+/// Mean |x| over root mean square of a normal distribution.
+constexpr float kMeanOverRms = 0.798F;
 
 }  // namespace
 
@@ -29,6 +31,46 @@ std::optional<TileFit> TileFitter::fit(const QuadtreeNode& node) const {
   const Eigen::Vector3f plane = pyramid_.regress(node).cast<float>();
   if (!isInFront(rect, plane)) return std::nullopt;
   return measure(rect, plane, origin, count, mean_depth);
+}
+
+bool TileFitter::admits(const QuadtreeNode& node) const {
+  const int count = pyramid_.count(node);
+  if (count == 0 || count < options_.min_fill * pyramid_.area(node)) return false;
+  const TileRect rect = pyramid_.grid().rect(node);
+  if (options_.corner_check != CornerCheck::kNone && !findCorners(rect)) return false;
+  return isInFront(rect, pyramid_.regress(node).cast<float>());
+}
+
+TileFit TileFitter::measure(const QuadtreeNode& node) const {
+  TileFit fit;
+  fit.plane = pyramid_.regress(node).cast<float>();
+  fit.count = pyramid_.count(node);
+  const ResidualSums sums = pyramid_.residuals(pyramid_.grid().rect(node), fit.plane);
+  fit.depth_sum = sums.depth;
+  fit.point_plane_sum = planeDistance(node, fit.plane) * sums.relative;
+  return fit;
+}
+
+TileFit TileFitter::estimate(const QuadtreeNode& node) const {
+  TileFit fit;
+  fit.plane = pyramid_.regress(node).cast<float>();
+  fit.count = pyramid_.count(node);
+  const float depth = 1.0F / pyramid_.meanInverseDepth(node);
+  const float error = kMeanOverRms * std::sqrt(pyramid_.meanSquare(node, fit.plane)) * depth;
+  fit.depth_sum = fit.count * error * depth;
+  fit.point_plane_sum = fit.count * error * planeDistance(node, fit.plane);
+  return fit;
+}
+
+float TileFitter::distortion(const QuadtreeNode& node) const {
+  const TileFit fit = estimate(node);
+  const double sum = options_.along_ray_test ? fit.depth_sum : fit.point_plane_sum;
+  return static_cast<float>(sum) / allowedError(1.0F / pyramid_.meanInverseDepth(node));
+}
+
+float TileFitter::planeDistance(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
+  const float gamma = plane.z() - plane.head<2>().dot(pyramid_.origin(node));
+  return 1.0F / Eigen::Vector3f(plane.x(), plane.y(), gamma).norm();
 }
 
 std::optional<TileFitter::Corners> TileFitter::findCorners(const TileRect& rect) const {

@@ -4,7 +4,7 @@
 // How often, how well and how fast ICaP aligns pairs of real keyframes: for each sequence given,
 // pairs 5-40 cm and less than 30 degrees apart, guesses off by 10 cm and 5 degrees in random
 // directions; success is an end within 5 cm and 2.5 degrees of the ground truth.
-// Usage: bench_icap TUM_FOLDER... [key=value...], e.g. icap/fine_tile=16
+// Usage: bench_icap TUM_FOLDER... [key=value...], e.g. icap/fine_tile=16 or plane_fit/lambda=0
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -17,6 +17,7 @@
 #include "planecloud_slam/icap/icap.h"
 #include "planecloud_slam/icap/visibility.h"
 #include "planecloud_slam/plane_fit/option_values.h"
+#include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 #include "planecloud_slam/rosbags/sequence_folder.h"
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
@@ -39,9 +40,15 @@ struct Pair {
   Eigen::Isometry3d T_guess_error;
 };
 
-std::vector<View> loadViews(const std::string& path, const IcapOptions& options) {
+struct Settings {
+  IcapOptions icap;
+  QuadtreeFitterOptions plane_fit;
+  CodecOptions codec;
+};
+
+std::vector<View> loadViews(const std::string& path, const Settings& settings) {
   const SequenceFolder folder = openSequenceFolder(path, {});
-  QuadtreeFitter fitter(std::make_shared<const Camera>(folder.camera), QuadtreeFitterOptions());
+  QuadtreeFitter fitter(std::make_shared<const Camera>(folder.camera), settings.plane_fit);
   const std::size_t stride = std::max<std::size_t>(1, folder.pairs.size() / 60);
   std::vector<View> views;
   for (std::size_t i = 0; i < folder.pairs.size(); i += stride) {
@@ -49,7 +56,9 @@ std::vector<View> loadViews(const std::string& path, const IcapOptions& options)
         poseAt(folder.ground_truth, folder.pairs[i].depth_stamp);
     if (!T_world_camera) continue;
     const Image<float> depth = readSequenceImages(folder, folder.pairs[i]).depth;
-    views.push_back({PlaneSet(fitter.fit(depth.view()), options.planes), *T_world_camera});
+    // As the backend gets it: through the coder.
+    const PlaneCloud cloud = quantise(fitter.fit(depth.view()), settings.codec);
+    views.push_back({PlaneSet(cloud, settings.icap.planes), *T_world_camera});
   }
   return views;
 }
@@ -118,7 +127,7 @@ void run(const std::string& name, const std::vector<View>& views, const IcapOpti
 }
 
 int runAll(int argc, char** argv) {
-  IcapOptions options;
+  Settings settings;
   OptionValues values;
   std::vector<std::string> folders;
   for (int i = 1; i < argc; ++i) {
@@ -130,7 +139,9 @@ int runAll(int argc, char** argv) {
       values[argument.substr(0, equals)] = argument.substr(equals + 1);
     }
   }
-  takeOptions(values, options, "icap/");
+  takeOptions(values, settings.icap, "icap/");
+  takeOptions(values, settings.plane_fit, "plane_fit/");
+  takeOptions(values, settings.codec, "codec/");
   if (!values.empty()) {
     std::fprintf(stderr, "unknown key: %s\n", values.begin()->first.c_str());
     return 2;
@@ -138,11 +149,11 @@ int runAll(int argc, char** argv) {
   std::printf("%-24s %-7s %7s %6s %6s %6s %7s %6s %6s %5s\n", "sequence", "form", "success", "mm",
               "deg", "NEES", "overlap", "ms", "iter", "degen");
   for (const std::string& folder : folders) {
-    const std::vector<View> views = loadViews(folder, options);
+    const std::vector<View> views = loadViews(folder, settings);
     const std::string name = folder.substr(folder.find_last_of('/') + 1);
     for (const IcapForm form : {IcapForm::kPaper, IcapForm::kRobust}) {
-      options.form = form;
-      run(name, views, options);
+      settings.icap.form = form;
+      run(name, views, settings.icap);
     }
   }
   return 0;

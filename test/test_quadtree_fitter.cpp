@@ -24,6 +24,7 @@ QuadtreeFitterOptions fixedOptions(double tolerance) {
   QuadtreeFitterOptions options;
   options.acceptance = AcceptanceRule::kFixed;
   options.tolerance = tolerance;
+  options.lambda = 0.0;  // the paper's rule
   return options;
 }
 
@@ -126,6 +127,7 @@ TEST(QuadtreeFitter, SinglePixelHolesForceNoSubdivisionUnlessThePaperIsTakenLite
     for (int x = 0; x < 640; x += 64) depth(x, y) = std::numeric_limits<float>::quiet_NaN();
   }
   QuadtreeFitterOptions options;
+  options.lambda = 0.0;
   EXPECT_EQ(QuadtreeFitter(camera, options).fit(depth.view()).tiles.size(), 80U);
   options.corner_check = CornerCheck::kExact;
   EXPECT_GT(QuadtreeFitter(camera, options).fit(depth.view()).tiles.size(), 400U);
@@ -239,7 +241,9 @@ struct TickingClock {
 TEST(QuadtreeFitter, DeadlineLeavesACoarserCloud) {
   const auto camera = makeCamera(testCamera());
   const Image<float> depth = noisyCorridor(*camera, 5);
-  QuadtreeFitter fitter(camera, {});
+  QuadtreeFitterOptions options;
+  options.lambda = 0.0;
+  QuadtreeFitter fitter(camera, options);
   const PlaneCloud whole = fitter.fit(depth.view());
   double coverage = -1.0;
   bool stopped_half_way = false;

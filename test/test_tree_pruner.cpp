@@ -1,0 +1,141 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "planar_scene.h"
+#include "planecloud_slam/plane_fit/coding_order.h"
+#include "planecloud_slam/plane_fit/plane_cloud_codec.h"
+#include "planecloud_slam/plane_fit/quadtree_fitter.h"
+#include "planecloud_slam/plane_fit/reconstruction.h"
+#include "planecloud_slam/plane_fit/tree_pruner.h"
+
+namespace planecloud {
+namespace {
+
+struct NoisyCorridor {
+  std::shared_ptr<const Camera> camera = std::make_shared<const Camera>(testCamera());
+  Image<float> truth = renderCorridor(*camera);
+  Image<float> depth = truth;
+  explicit NoisyCorridor(std::uint32_t seed) { addSensorNoise(depth, 0.5, seed); }
+};
+
+QuadtreeFitterOptions withLambda(double lambda) {
+  QuadtreeFitterOptions options;
+  options.lambda = lambda;
+  return options;
+}
+
+/// Mean difference [m] to the true surface over the pixels that have depth and a plane.
+double trueError(const Image<float>& depth, const NoisyCorridor& scene) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (int y = 0; y < depth.height(); ++y) {
+    for (int x = 0; x < depth.width(); ++x) {
+      if (std::isnan(depth(x, y)) || std::isnan(scene.depth(x, y))) continue;
+      sum += std::abs(depth(x, y) - scene.truth(x, y));
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+TEST(TreePruner, MakesSmallerCloudsThatAreTruerThanTheSensor) {
+  const NoisyCorridor scene(1);
+  const PlaneCloud whole = QuadtreeFitter(scene.camera, withLambda(0.0)).fit(scene.depth.view());
+  const PlaneCloud pruned = QuadtreeFitter(scene.camera, {}).fit(scene.depth.view());
+  EXPECT_LT(encode(pruned, {}).bytes.size(), encode(whole, {}).bytes.size());
+  EXPECT_GE(pruned.statistics.coverage, whole.statistics.coverage);
+  EXPECT_LT(trueError(reconstructDepth(pruned, *scene.camera), scene),
+            0.5 * trueError(scene.depth, scene));
+}
+
+TEST(TreePruner, SpendsFewerBytesTheMoreABitCosts) {
+  const NoisyCorridor scene(2);
+  std::size_t bytes = static_cast<std::size_t>(-1);
+  double error = 0.0;
+  for (const double lambda : {0.1, 1.0, 3.0, 10.0, 30.0}) {
+    const PlaneCloud cloud =
+        QuadtreeFitter(scene.camera, withLambda(lambda)).fit(scene.depth.view());
+    EXPECT_LT(encode(cloud, {}).bytes.size(), bytes) << lambda;
+    EXPECT_GT(cloud.statistics.depth_error, error) << lambda;
+    bytes = encode(cloud, {}).bytes.size();
+    error = cloud.statistics.depth_error;
+  }
+}
+
+TEST(TreePruner, EstimatesTheErrorThatAPassOverThePixelsFinds) {
+  const NoisyCorridor scene(3);
+  MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(pyramid.read(scene.depth.view(), nullptr));
+  const TileFitter fitter(pyramid, {});
+  double estimated = 0.0;
+  double measured = 0.0;
+  for (int row = 0; row < pyramid.grid().rows(2); ++row) {
+    for (int column = 0; column < pyramid.grid().columns(2); ++column) {
+      const QuadtreeNode node{2, column, row};
+      if (!fitter.fit(node)) continue;  // only where there is nothing but noise
+      estimated += fitter.estimate(node).depth_sum;
+      measured += fitter.measure(node).depth_sum;
+    }
+  }
+  ASSERT_GT(measured, 0.0);
+  EXPECT_NEAR(estimated / measured, 1.0, 0.05);  // rounding to steps is no normal distribution
+}
+
+TEST(TreePruner, RefusesTilesTwoTolerancesOff) {
+  const NoisyCorridor scene(4);
+  const QuadtreeFitterOptions options;
+  QuadtreeFitter fitter(scene.camera, options);
+  const PlaneCloud cloud = fitter.fit(scene.depth.view());
+  for (const PlanarTile& tile : cloud.tiles) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (int y = tile.rect.y; y < tile.rect.y + tile.rect.height; ++y) {
+      for (int x = tile.rect.x; x < tile.rect.x + tile.rect.width; ++x) {
+        if (std::isnan(scene.depth(x, y))) continue;
+        const Eigen::Vector3f ray(scene.camera->tangentsX()(x, y), scene.camera->tangentsY()(x, y),
+                                  1.0F);
+        sum += std::abs(1.0F / scene.depth(x, y) - tile.inverse_depth.dot(ray));
+        count += 1.0;
+      }
+    }
+    // Where residuals are no noise (an edge in the tile), their mean exceeds the estimate.
+    EXPECT_LT(sum / count, 1.3 * 2.0 * options.tolerance);
+  }
+}
+
+/// A clock that moves one second at each look.
+struct TickingClock {
+  std::shared_ptr<int> looks = std::make_shared<int>(0);
+  FitBudget::Clock::time_point operator()() const {
+    return FitBudget::Clock::time_point(std::chrono::seconds((*looks)++));
+  }
+};
+
+TEST(TreePruner, StopsWithinAFewNodesAndLeavesACoarserValidCloud) {
+  const NoisyCorridor scene(5);
+  QuadtreeFitter fitter(scene.camera, {});
+  const PlaneCloud whole = fitter.fit(scene.depth.view());
+  const QuadtreeGrid grid(whole.layout, 640, 480);
+  double coverage = -1.0;
+  bool stopped_half_way = false;
+  // 122 looks while the image is read, then one every 32 nodes.
+  for (int seconds = 110; seconds < 1100; seconds += seconds < 160 ? 2 : 100) {
+    const TickingClock clock;
+    const PlaneCloud part = fitter.fit(scene.depth.view(), FitBudget::fromNow(seconds, clock));
+    EXPECT_LE(*clock.looks, std::max(122, seconds + 4));
+    EXPECT_EQ(inCodingOrder(grid, part.tiles).size(), part.tiles.size());
+    EXPECT_GE(part.statistics.coverage, coverage);
+    coverage = part.statistics.coverage;
+    stopped_half_way = stopped_half_way || (part.statistics.stopped_by_time && !part.tiles.empty());
+  }
+  EXPECT_TRUE(stopped_half_way);
+  EXPECT_EQ(coverage, whole.statistics.coverage);
+}
+
+}  // namespace
+}  // namespace planecloud
