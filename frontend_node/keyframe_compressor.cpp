@@ -20,10 +20,11 @@ class KeyframeCompressor::Impl {
 
   Keyframe compress(CompletedKeyframe completed, const KeyframeBudget& budget) {
     Keyframe keyframe = std::move(completed.keyframe);
-    const PlaneCloud cloud =
-        fitterOf(completed.camera).fit(completed.depth.view(), fitBudget(budget));
-    KeyframePayload payload = encodePayload(cloud, {completed.grey.view(), completed.color.view()},
-                                            {options_.codec, options_.texture}, budget.bytes);
+    PlaneCloud cloud = fitterOf(completed.camera).fit(completed.depth.view(), fitBudget(budget));
+    KeyframePayload payload =
+        encodePayload({std::move(cloud), completed.depth.view(), options_.plane_fit},
+                      {completed.grey.view(), completed.color.view()},
+                      {options_.codec, options_.texture}, budget.bytes);
     keyframe.planes = std::move(payload.planes);
     keyframe.texture = std::move(payload.texture);
     HistoryLinks links = history_.align(completed.history, keyframe.edges);

@@ -18,13 +18,13 @@ std::optional<std::size_t> tighter(const CodecOptions& codec,
 
 }  // namespace
 
-KeyframePayload encodePayload(const PlaneCloud& cloud, const TextureSource& images,
+KeyframePayload encodePayload(const FittedDepth& fitted, const TextureSource& images,
                               const PayloadOptions& options,
                               std::optional<std::size_t> most_bytes) {
   KeyframePayload payload;
   const std::optional<std::size_t> budget = tighter(options.codec, most_bytes);
   if (!budget) {
-    payload.planes = encode(cloud, options.codec);
+    payload.planes = encode(fitted, options.codec);
     payload.texture = encodeTexture(images.grey, images.color, options.texture);
     return payload;
   }
@@ -34,7 +34,7 @@ KeyframePayload encodePayload(const PlaneCloud& cloud, const TextureSource& imag
   CodecOptions codec = options.codec;
   const std::size_t rest = *budget - payload.texture.bytes.size();
   codec.byte_budget = static_cast<int>(std::max(kLeastStream, rest));
-  payload.planes = encode(cloud, codec);
+  payload.planes = encode(fitted, codec);
   return payload;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "planecloud_slam/frontend_node/keyframe_texture.h"
+#include "planecloud_slam/plane_fit/fitted_depth.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
@@ -33,10 +34,10 @@ struct PayloadOptions {
   TextureOptions texture;
 };
 
-/// Encodes `cloud` and its texture. Together they keep to the codec's byte budget and to
-/// `most_bytes`, the smaller of both: texture takes at most its share, planes have the rest.
-/// Throws as `encode` does.
-[[nodiscard]] KeyframePayload encodePayload(const PlaneCloud& cloud, const TextureSource& images,
+/// Encodes planes (or what else the codec wishes) and texture. Together they keep to the codec's
+/// byte budget and to `most_bytes`, the smaller of both: texture takes at most its share, planes
+/// have the rest. Throws as `encode` does.
+[[nodiscard]] KeyframePayload encodePayload(const FittedDepth& fitted, const TextureSource& images,
                                             const PayloadOptions& options,
                                             std::optional<std::size_t> most_bytes = {});
 

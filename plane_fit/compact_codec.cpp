@@ -2,124 +2,122 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/compact_codec.h"
 
-#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include "planecloud_slam/plane_fit/byte_stream.h"
+#include "planecloud_slam/plane_fit/checksum.h"
 #include "planecloud_slam/plane_fit/coding_order.h"
 #include "planecloud_slam/plane_fit/quadtree_walk.h"
+#include "planecloud_slam/plane_fit/tile_merger.h"
+#include "planecloud_slam/plane_fit/validity_mask.h"
 
 namespace planecloud {
 namespace {
 
-constexpr std::uint32_t kCompactVersion = 0x21;
-std::uint16_t crc16(const CameraIntrinsics& camera, const std::uint8_t* bytes, std::size_t size) {
-  std::uint32_t crc = 0xFFFF;
-  const auto add = [&crc](std::uint32_t byte) {
-    crc ^= byte << 8;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc << 1) ^ ((crc & 0x8000U) != 0 ? 0x1021U : 0U);
-    crc &= 0xFFFFU;
-  };
-  for (const int side : {camera.width, camera.height}) {
-    add(static_cast<std::uint32_t>(side) & 255U);
-    add(static_cast<std::uint32_t>(side) >> 8);
-  }
-  for (std::size_t i = 0; i < size; ++i) add(bytes[i]);
-  return static_cast<std::uint16_t>(crc);
-}
+constexpr std::uint32_t kCompactVersion = 0x22;
+constexpr std::uint32_t kMaskBit = 0x8000;
 
-/// A stream of the first tiles and an upper bound of its length after each of them.
-struct Draft {
-  std::vector<std::uint8_t> bytes;
-  std::vector<std::size_t> sizes;
+/// What a cloud becomes on the wire.
+class CompactEncoder {
+ public:
+  CompactEncoder(const PlaneCloud& cloud, const QuadtreeGrid& grid, const CodecOptions& options)
+      : cloud_(cloud),
+        grid_(grid),
+        step_(static_cast<int>(std::lround(options.quantisation_step / TileQuantiser::kStepUnit))),
+        with_mask_(options.mask),
+        quantiser_(cloud.camera, grid, step_) {}
+
+  /// `tile_bits`: what each tile took, in coding order.
+  [[nodiscard]] std::vector<std::uint8_t> encode(const std::vector<TileNode>& tiles,
+                                                 std::vector<double>* tile_bits = nullptr) const {
+    const std::vector<CodedTile> coded = quantise(tiles);
+    std::vector<std::uint8_t> bytes;
+    ByteWriter writer(bytes);
+    writer.u8(kCompactVersion);
+    writer.u8(grid_.layout().initial_width);
+    writer.u8(grid_.layout().initial_height);
+    writer.u8(grid_.layout().min_tile);
+    writer.u16(static_cast<std::uint32_t>(step_) | (with_mask_ ? kMaskBit : 0U));
+    writer.varint(static_cast<std::uint32_t>(coded.size()));
+    RangeEncoder coder(bytes);
+    walkQuadtrees(grid_, quantiser_, coded.size(), coder, CodingPlan(grid_, coded),
+                  [&](const CodedTile&) {
+                    if (tile_bits != nullptr) tile_bits->push_back(coder.bitsSoFar());
+                  });
+    if (with_mask_) encodeMask(coder, cloud_.mask, rectsOf(tiles));
+    coder.finish();
+    writer.u16(streamChecksum(cloud_.camera, bytes.data(), bytes.size()));
+    return bytes;
+  }
+
+ private:
+  static std::vector<TileRect> rectsOf(const std::vector<TileNode>& tiles) {
+    std::vector<TileRect> rects;
+    rects.reserve(tiles.size());
+    for (const TileNode& tile : tiles) rects.push_back(tile.tile.rect);
+    return rects;
+  }
+
+  [[nodiscard]] std::vector<CodedTile> quantise(const std::vector<TileNode>& tiles) const {
+    std::vector<CodedTile> coded;
+    coded.reserve(tiles.size());
+    for (const TileNode& tile : tiles) {
+      const std::optional<QuantisedPlane> plane = quantiser_.quantise(tile.tile, tile.node.level);
+      if (!plane) {
+        throw std::invalid_argument(
+            "plane cloud: the plane of the tile at (" + std::to_string(tile.tile.rect.x) + ", " +
+            std::to_string(tile.tile.rect.y) + ") does not lie in front of the camera");
+      }
+      coded.push_back({tile.node, *plane});
+    }
+    return coded;
+  }
+
+  const PlaneCloud& cloud_;
+  const QuadtreeGrid& grid_;
+  int step_;
+  bool with_mask_;
+  TileQuantiser quantiser_;
 };
 
-Draft encodeTiles(const QuadtreeGrid& grid, const CameraIntrinsics& camera, int step,
-                  const std::vector<CodedTile>& tiles) {
-  Draft draft;
-  ByteWriter writer(draft.bytes);
-  writer.u8(kCompactVersion);
-  writer.u8(grid.layout().initial_width);
-  writer.u8(grid.layout().initial_height);
-  writer.u8(grid.layout().min_tile);
-  writer.u16(static_cast<std::uint32_t>(step));
-  writer.varint(static_cast<std::uint32_t>(tiles.size()));
-  const std::size_t header = draft.bytes.size();
-  RangeEncoder coder(draft.bytes);
-  const TileQuantiser quantiser(camera, grid, step);
-  draft.sizes.reserve(tiles.size());
-  walkQuadtrees(grid, quantiser, tiles.size(), coder, CodingPlan(grid, tiles),
-                [&](const CodedTile&) {
-                  draft.sizes.push_back(header + coder.bytesSoFar() + sizeof(std::uint16_t));
-                });
-  coder.finish();
-  writer.u16(crc16(camera, draft.bytes.data(), draft.bytes.size()));
-  return draft;
-}
-
-std::vector<CodedTile> quantiseTiles(const PlaneCloud& cloud, const QuadtreeGrid& grid, int step) {
-  const TileQuantiser quantiser(cloud.camera, grid, step);
-  std::vector<CodedTile> coded;
-  coded.reserve(cloud.tiles.size());
-  for (const TileNode& tile : inCodingOrder(grid, cloud.tiles)) {
-    const std::optional<QuantisedPlane> plane = quantiser.quantise(tile.tile, tile.node.level);
-    if (!plane) {
-      throw std::invalid_argument(
-          "plane cloud: the plane of the tile at (" + std::to_string(tile.tile.rect.x) + ", " +
-          std::to_string(tile.tile.rect.y) + ") does not lie in front of the camera");
-    }
-    coded.push_back({tile.node, *plane});
+void checkMask(const PlaneCloud& cloud) {
+  if (cloud.mask.width() == cloud.camera.width && cloud.mask.height() == cloud.camera.height) {
+    return;
   }
-  return coded;
-}
-
-/// Leaves out the last tiles until the stream fits.
-Draft encodeWithin(std::size_t budget, const QuadtreeGrid& grid, const CameraIntrinsics& camera,
-                   int step, std::vector<CodedTile>& tiles) {
-  Draft draft = encodeTiles(grid, camera, step, tiles);
-  while (draft.bytes.size() > budget && !tiles.empty()) {
-    // Tiles left out change the split flags of their ancestors, so the estimate may be a few
-    // bytes off; each round leaves out at least one more.
-    const auto fitting = std::upper_bound(draft.sizes.begin(), draft.sizes.end(), budget);
-    const auto count = static_cast<std::size_t>(fitting - draft.sizes.begin());
-    tiles.resize(std::min(count, tiles.size() - 1));
-    draft = encodeTiles(grid, camera, step, tiles);
-  }
-  return draft;
-}
-
-double areaOf(const QuadtreeGrid& grid, const std::vector<CodedTile>& tiles) {
-  double area = 0.0;
-  for (const CodedTile& tile : tiles) area += grid.rect(tile.node).area();
-  return area;
+  throw std::invalid_argument("codec/mask: the plane cloud has no mask of its image's size");
 }
 
 }  // namespace
 
 EncodedPlaneCloud encodeCompact(const PlaneCloud& cloud, const CodecOptions& options) {
   cloud.camera.check();
+  if (options.mask) checkMask(cloud);
   const QuadtreeGrid grid(cloud.layout, cloud.camera.width, cloud.camera.height);
-  const auto step =
-      static_cast<int>(std::lround(options.quantisation_step / TileQuantiser::kStepUnit));
-  std::vector<CodedTile> tiles = quantiseTiles(cloud, grid, step);
-  const double area = areaOf(grid, tiles);
+  const CompactEncoder encoder(cloud, grid, options);
+  std::vector<TileNode> tiles = inCodingOrder(grid, cloud.tiles);
   EncodedPlaneCloud encoded;
   encoded.camera = cloud.camera;
   encoded.encoding = PlaneCloudEncoding::kCompact;
   encoded.statistics = cloud.statistics;
-  if (options.byte_budget > 0) {
-    const auto budget = static_cast<std::size_t>(options.byte_budget);
-    encoded.bytes = encodeWithin(budget, grid, cloud.camera, step, tiles).bytes;
-  } else {
-    encoded.bytes = encodeTiles(grid, cloud.camera, step, tiles).bytes;
+  encoded.bytes = encoder.encode(tiles);
+  const auto budget = static_cast<std::size_t>(options.byte_budget);
+  if (budget > 0 && encoded.bytes.size() > budget) {
+    std::vector<double> bits;
+    (void)encoder.encode(tiles, &bits);
+    std::adjacent_difference(bits.begin(), bits.end(), bits.begin());
+    const TileMerger merger(grid, cloud.camera, tiles, bits);
+    const int price = merger.lowestPrice([&](int candidate) {
+      return encoder.encode(inCodingOrder(grid, merger.at(candidate).tiles)).size() <= budget;
+    });
+    const TileMerger::Version version = merger.at(price);
+    tiles = inCodingOrder(grid, version.tiles);
+    encoded.bytes = encoder.encode(tiles);
+    encoded.statistics = merger.reduce(cloud.statistics, version);
   }
   encoded.plane_count = static_cast<std::uint32_t>(tiles.size());
-  if (tiles.size() < cloud.tiles.size()) {
-    encoded.statistics.stopped_by_bytes = true;
-    encoded.statistics.coverage *= areaOf(grid, tiles) / area;
-  }
   return encoded;
 }
 
@@ -136,12 +134,12 @@ PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   cloud.layout.initial_width = static_cast<int>(reader.u8());
   cloud.layout.initial_height = static_cast<int>(reader.u8());
   cloud.layout.min_tile = static_cast<int>(reader.u8());
-  const auto step = static_cast<int>(reader.u16());
+  const std::uint32_t step_and_mask = reader.u16();
+  const auto step = static_cast<int>(step_and_mask & ~kMaskBit);
   const std::uint32_t count = reader.varint();
-  if (reader.left() < sizeof(std::uint16_t) ||
-      crc16(encoded.camera, bytes.data(), bytes.size() - 2) !=
-          (bytes[bytes.size() - 2] | (bytes[bytes.size() - 1] << 8))) {
-    throw PlaneCloudDecodeError("plane cloud: wrong checksum, the stream is truncated or corrupt");
+  requireChecksum(encoded.camera, bytes);
+  if (reader.left() < sizeof(std::uint16_t)) {
+    throw PlaneCloudDecodeError("plane cloud: the stream is truncated");
   }
   if (step < TileQuantiser::kMinStep || step > TileQuantiser::kMaxStep) {
     throw PlaneCloudDecodeError("plane cloud: impossible quantisation step");
@@ -161,6 +159,12 @@ PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   };
   if (walkQuadtrees(grid, quantiser, count, coder, NoPlan{}, decodeTile) != count) {
     throw PlaneCloudDecodeError("plane cloud: fewer tiles than announced");
+  }
+  if ((step_and_mask & kMaskBit) != 0) {
+    std::vector<TileRect> rects;
+    rects.reserve(count);
+    for (const PlanarTile& tile : cloud.tiles) rects.push_back(tile.rect);
+    cloud.mask = decodeMask(coder, cloud.camera, rects);
   }
   if (!coder.atEnd()) throw PlaneCloudDecodeError("plane cloud: bytes left over");
   return cloud;

@@ -4,14 +4,15 @@
 
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 
-/// The COMPACT stream, version 1 (integers little-endian):
+/// The COMPACT stream, version 2 (integers little-endian):
 ///
-///     u8   0x21
+///     u8   0x22
 ///     u8   initial tile width, initial tile height, min tile [px]
-///     u16  quantisation step [1e-5 1/m]
+///     u16  quantisation step [1e-5 1/m] (bits 0-12), mask (bit 15)
 ///     uv   number of planes (7 bits a byte, lowest first, high bit: more follow)
 ///     ...  range-coded: nodes breadth first, each "tile here", else "split"; after the former the
-///          plane as three integers less their prediction; ends with the last plane
+///          plane as three integers less their prediction; ends with the last plane; then the
+///          mask, if there is one
 ///     u16  CRC-16/CCITT of image width, height (u16 each) and all bytes before
 namespace planecloud {
 

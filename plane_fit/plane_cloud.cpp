@@ -17,17 +17,25 @@ Eigen::Vector4d PlanarTile::plane() const {
 }
 
 std::string toString(PlaneCloudEncoding encoding) {
-  return encoding == PlaneCloudEncoding::kRaw ? "raw" : "compact";
+  switch (encoding) {
+    case PlaneCloudEncoding::kRaw:
+      return "raw";
+    case PlaneCloudEncoding::kLossless:
+      return "lossless";
+    case PlaneCloudEncoding::kCompact:
+      break;
+  }
+  return "compact";
 }
 
 void fromString(const std::string& text, PlaneCloudEncoding& encoding) {
-  if (text == "raw") {
-    encoding = PlaneCloudEncoding::kRaw;
-  } else if (text == "compact") {
-    encoding = PlaneCloudEncoding::kCompact;
-  } else {
-    throw std::invalid_argument("encoding '" + text + "': must be raw or compact");
+  for (const PlaneCloudEncoding candidate :
+       {PlaneCloudEncoding::kRaw, PlaneCloudEncoding::kCompact, PlaneCloudEncoding::kLossless}) {
+    if (text != toString(candidate)) continue;
+    encoding = candidate;
+    return;
   }
+  throw std::invalid_argument("encoding '" + text + "': must be raw, compact or lossless");
 }
 
 }  // namespace planecloud

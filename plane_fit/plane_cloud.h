@@ -66,12 +66,15 @@ struct PlaneCloud {
   QuadtreeLayout layout;
   std::vector<PlanarTile> tiles;
   PlaneCloudStatistics statistics;
+  /// 1 where a pixel of the tiles had depth, else 0, height x width; empty: not known.
+  Image<std::uint8_t> mask;
 };
 
 /// Wire formats of a plane cloud; the values are part of the wire contract.
 enum class PlaneCloudEncoding : std::uint8_t {
-  kRaw = 1,      ///< the paper's 8 float32 a plane: a b c d x y width height
-  kCompact = 2,  ///< quadtree shape + quantised, range-coded inverse-depth coefficients
+  kRaw = 1,       ///< the paper's 8 float32 a plane: a b c d x y width height
+  kCompact = 2,   ///< quadtree shape + quantised, range-coded inverse-depth coefficients
+  kLossless = 3,  ///< the depth image itself, range-coded; planes are fitted by the receiver
 };
 
 [[nodiscard]] std::string toString(PlaneCloudEncoding encoding);

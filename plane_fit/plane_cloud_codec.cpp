@@ -3,6 +3,7 @@
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 
 #include "planecloud_slam/plane_fit/compact_codec.h"
+#include "planecloud_slam/plane_fit/depth_codec.h"
 #include "planecloud_slam/plane_fit/raw_codec.h"
 #include "planecloud_slam/plane_fit/tile_quantiser.h"
 
@@ -17,8 +18,15 @@ void CodecOptions::check() const {
 
 EncodedPlaneCloud encode(const PlaneCloud& cloud, const CodecOptions& options) {
   options.check();
-  return options.encoding == PlaneCloudEncoding::kRaw ? encodeRaw(cloud, options)
-                                                      : encodeCompact(cloud, options);
+  switch (options.encoding) {
+    case PlaneCloudEncoding::kRaw:
+      return encodeRaw(cloud, options);
+    case PlaneCloudEncoding::kCompact:
+      return encodeCompact(cloud, options);
+    case PlaneCloudEncoding::kLossless:
+      break;
+  }
+  throw std::invalid_argument("LOSSLESS codes the depth image, not its planes: see encodeDepth");
 }
 
 PlaneCloud decode(const EncodedPlaneCloud& encoded) {
@@ -29,6 +37,8 @@ PlaneCloud decode(const EncodedPlaneCloud& encoded) {
         return decodeRaw(encoded);
       case PlaneCloudEncoding::kCompact:
         return decodeCompact(encoded);
+      case PlaneCloudEncoding::kLossless:
+        return fitDecodedDepth(encoded);
     }
   } catch (const std::invalid_argument& error) {
     throw PlaneCloudDecodeError(std::string("plane cloud: ") + error.what());

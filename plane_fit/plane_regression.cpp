@@ -12,17 +12,17 @@ constexpr double kMinSpreadRatio = 1e-5;
 
 }  // namespace
 
-void TileMoments::add(double pixel_u, double pixel_v, double pixel_q) {
-  n += 1.0;
-  u += pixel_u;
-  v += pixel_v;
-  uu += pixel_u * pixel_u;
-  uv += pixel_u * pixel_v;
-  vv += pixel_v * pixel_v;
-  q += pixel_q;
-  qu += pixel_q * pixel_u;
-  qv += pixel_q * pixel_v;
-  qq += pixel_q * pixel_q;
+void TileMoments::add(double pixel_u, double pixel_v, double pixel_q, double weight) {
+  n += weight;
+  u += weight * pixel_u;
+  v += weight * pixel_v;
+  uu += weight * pixel_u * pixel_u;
+  uv += weight * pixel_u * pixel_v;
+  vv += weight * pixel_v * pixel_v;
+  q += weight * pixel_q;
+  qu += weight * pixel_q * pixel_u;
+  qv += weight * pixel_q * pixel_v;
+  qq += weight * pixel_q * pixel_q;
 }
 
 TileMoments& TileMoments::operator+=(const TileMoments& other) {

@@ -12,7 +12,7 @@ struct TileMoments {
   double n = 0.0, u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;
   double q = 0.0, qu = 0.0, qv = 0.0, qq = 0.0;
 
-  void add(double pixel_u, double pixel_v, double pixel_q);
+  void add(double pixel_u, double pixel_v, double pixel_q, double weight = 1.0);
   TileMoments& operator+=(const TileMoments& other);
 };
 

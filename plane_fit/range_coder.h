@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -58,8 +59,10 @@ class RangeEncoder {
   bool code(bool bit, AdaptiveBit& model);
   /// The `count` low bits of `value` without a model, highest first.
   std::uint32_t codeRaw(std::uint32_t value, int count);
-  /// An upper bound of the bytes that `finish` would leave behind `bytes.size()` at construction.
-  [[nodiscard]] std::size_t bytesSoFar() const { return bytes_.size() - begin_ + pending_ + 5; }
+  /// What was coded so far takes this many bits, up to a constant.
+  [[nodiscard]] double bitsSoFar() const {
+    return 8.0 * static_cast<double>(bytes_.size() - begin_ + pending_) - std::log2(range_);
+  }
   /// Writes as few bytes as tell the last bits. Trailing zeros are left out: the decoder reads
   /// zeros there.
   void finish();

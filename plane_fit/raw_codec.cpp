@@ -8,6 +8,7 @@
 
 #include "planecloud_slam/plane_fit/byte_stream.h"
 #include "planecloud_slam/plane_fit/coding_order.h"
+#include "planecloud_slam/plane_fit/tile_merger.h"
 
 namespace planecloud {
 namespace {
@@ -51,12 +52,6 @@ PlanarTile readPlane(ByteReader& reader) {
   return tile;
 }
 
-double areaOf(const std::vector<TileNode>& tiles) {
-  double area = 0.0;
-  for (const TileNode& tile : tiles) area += tile.tile.rect.area();
-  return area;
-}
-
 }  // namespace
 
 EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options) {
@@ -71,10 +66,13 @@ EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options
     const auto budget = static_cast<std::size_t>(options.byte_budget);
     const std::size_t room = (budget - kHeaderSize) / kPlaneSize;
     if (tiles.size() > room) {
-      const double area = areaOf(tiles);
-      tiles.resize(room);
-      encoded.statistics.stopped_by_bytes = true;
-      encoded.statistics.coverage *= areaOf(tiles) / area;
+      const TileMerger merger(grid, cloud.camera, tiles,
+                              std::vector<double>(tiles.size(), 8.0 * kPlaneSize));
+      const int price = merger.lowestPrice(
+          [&](int candidate) { return merger.at(candidate).tiles.size() <= room; });
+      const TileMerger::Version version = merger.at(price);
+      tiles = inCodingOrder(grid, version.tiles);
+      encoded.statistics = merger.reduce(cloud.statistics, version);
     }
   }
   encoded.plane_count = static_cast<std::uint32_t>(tiles.size());

@@ -15,6 +15,11 @@ void checkCamera(const PlaneCloud& cloud, const Camera& camera) {
       "a plane cloud is reconstructed with its own camera: make it from PlaneCloud::camera");
 }
 
+/// True as well where no mask tells.
+bool hadDepth(const PlaneCloud& cloud, int x, int y) {
+  return cloud.mask.empty() || cloud.mask(x, y) != 0;
+}
+
 int roundUpTo(int value, int step) { return (value + step - 1) / step * step; }
 
 }  // namespace
@@ -26,7 +31,7 @@ Image<float> reconstructDepth(const PlaneCloud& cloud, const Camera& camera) {
     for (int y = tile.rect.y; y < tile.rect.y + tile.rect.height; ++y) {
       for (int x = tile.rect.x; x < tile.rect.x + tile.rect.width; ++x) {
         const float z = tile.depthAt(camera.tangentsX()(x, y), camera.tangentsY()(x, y));
-        if (z > 0.0F) depth(x, y) = z;
+        if (z > 0.0F && hadDepth(cloud, x, y)) depth(x, y) = z;
       }
     }
   }
@@ -44,7 +49,7 @@ std::vector<Eigen::Vector3f> reconstructPoints(const PlaneCloud& cloud, const Ca
         const float u = camera.tangentsX()(x, y);
         const float v = camera.tangentsY()(x, y);
         const float z = tile.depthAt(u, v);
-        if (z > 0.0F) points.emplace_back(z * u, z * v, z);
+        if (z > 0.0F && hadDepth(cloud, x, y)) points.emplace_back(z * u, z * v, z);
       }
     }
   }

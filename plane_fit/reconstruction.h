@@ -13,7 +13,8 @@
 namespace planecloud {
 
 /// The depth image [m] that `cloud` stands for, height x width of its camera; NaN where no tile
-/// lies. Throws std::invalid_argument when `camera` is not the cloud's.
+/// lies or, with a mask, no depth was. Throws std::invalid_argument when `camera` is not the
+/// cloud's.
 [[nodiscard]] Image<float> reconstructDepth(const PlaneCloud& cloud, const Camera& camera);
 
 /// Points [m] of the optical frame on the tiles, one for every `step`-th pixel of the image in both

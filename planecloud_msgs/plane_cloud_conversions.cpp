@@ -42,12 +42,15 @@ CameraIntrinsics readCamera(const planecloud_slam::PlaneCloud& message) {
 
 PlaneCloudEncoding readEncoding(std::uint8_t number) {
   const PlaneCloudEncoding encoding{number};
-  if (encoding == PlaneCloudEncoding::kRaw || encoding == PlaneCloudEncoding::kCompact) {
-    return encoding;
+  switch (encoding) {
+    case PlaneCloudEncoding::kRaw:
+    case PlaneCloudEncoding::kCompact:
+    case PlaneCloudEncoding::kLossless:
+      return encoding;
   }
-  refuseMessage(
-      "encoding " + std::to_string(number) +
-      " of the plane cloud is unknown: must be 1 (RAW) or 2 (COMPACT); update this package");
+  refuseMessage("encoding " + std::to_string(number) +
+                " of the plane cloud is unknown: must be 1 (RAW), 2 (COMPACT) or 3 (LOSSLESS); "
+                "update this package");
 }
 
 void checkPlaneCount(const EncodedPlaneCloud& planes) {
@@ -55,6 +58,7 @@ void checkPlaneCount(const EncodedPlaneCloud& planes) {
                       static_cast<std::uint64_t>(planes.camera.height);
   const std::uint64_t count = planes.plane_count;
   std::uint64_t most = planes.bytes.empty() ? 0 : pixels;
+  if (planes.encoding == PlaneCloudEncoding::kLossless) most = 0;
   if (planes.encoding == PlaneCloudEncoding::kRaw) {
     most = std::min<std::uint64_t>(most, planes.bytes.size() / kRawPlaneBytes);
   }

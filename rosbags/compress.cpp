@@ -33,7 +33,10 @@ void addFitFlags(po::options_description& flags) {
       "min-tile", po::value<int>()->default_value(defaults.plane_fit.min_tile),
       "side of the smallest tiles [px]")(
       "encoding", po::value<std::string>()->default_value(text(defaults.codec.encoding)),
-      "raw (the paper's 32 bytes a plane) or compact")(
+      "raw (the paper's 32 bytes a plane), compact or lossless (the depth itself)")(
+      "lambda", po::value<double>()->default_value(defaults.plane_fit.lambda, "6"),
+      "what a bit must save: error in tolerances, summed over pixels; 0: tolerance alone decides")(
+      "mask", po::bool_switch(), "also send which pixels had depth, exactly")(
       "texture", po::value<std::string>()->default_value("none"),
       "what of the image goes with the planes: none, grey or color")(
       "time-budget", po::value<double>()->default_value(0.0), "for each fit [s], 0: none")(
@@ -70,6 +73,8 @@ CompressionOptions readOptions(const ParsedFlags& flags) {
       flags["initial-tile"].as<int>();
   options.plane_fit.min_tile = flags["min-tile"].as<int>();
   options.plane_fit.time_budget = flags["time-budget"].as<double>();
+  options.plane_fit.lambda = flags["lambda"].as<double>();
+  options.codec.mask = flags["mask"].as<bool>();
   options.codec.byte_budget = flags["byte-budget"].as<int>();
   try {
     fromString(flags["acceptance"].as<std::string>(), options.plane_fit.acceptance);

@@ -56,6 +56,8 @@ void CompressionReport::add(const CompressedFrame& frame) {
   decode_times_.push_back(frame.decode_time);
   bytes_.push_back(static_cast<double>(frame.bytes));
   texture_bytes_.push_back(static_cast<double>(frame.texture_bytes));
+  lossless_bytes_.push_back(static_cast<double>(frame.lossless_bytes));
+  costlier_.push_back(frame.bytes - frame.texture_bytes > frame.lossless_bytes ? 1.0 : 0.0);
   planes_.push_back(static_cast<double>(frame.planes));
   raw_bytes_.push_back(kRawPlaneBytes * planes_.back());
   coverages_.push_back(frame.coverage);
@@ -83,6 +85,8 @@ Json CompressionReport::json() const {
                {"decode_ms", timesJson(decode_times_)},
                {"bytes", bytesJson(bytes_)},
                {"raw_bytes", bytesJson(raw_bytes_)},
+               {"lossless_bytes", bytesJson(lossless_bytes_)},
+               {"costlier_than_lossless", summarise(costlier_).mean},
                {"planes", {{"mean", summarise(planes_).mean}}},
                {"coverage", summarise(coverages_).mean},
                {"point_plane_mm", meanInMilli(point_plane_errors_)},
@@ -104,6 +108,11 @@ std::string CompressionReport::table() const {
   text += bytesRow("bytes, mean", bytes_);
   if (hasTexture()) text += bytesRow("of them texture, mean", texture_bytes_);
   text += bytesRow("at 32 B a plane, mean", raw_bytes_);
+  text += bytesRow("lossless, mean", lossless_bytes_);
+  if (summarise(costlier_).mean > 0.0) {
+    text += format("%-22s %9.1f %%   (--encoding lossless is smaller and exact there)\n",
+                   "costlier than lossless", 100.0 * summarise(costlier_).mean);
+  }
   text += format("%-22s %9.1f\n", "planes, mean", summarise(planes_).mean);
   text += format("%-22s %9.2f\n", "bits a plane", bitsPerPlane());
   text += format("%-22s %9.2f %%\n", "coverage", 100.0 * summarise(coverages_).mean);

@@ -29,7 +29,8 @@ class CompressionReport {
   [[nodiscard]] bool hasTexture() const;
 
   std::vector<double> fit_times_, encode_times_, decode_times_;  ///< [s]
-  std::vector<double> bytes_, texture_bytes_, raw_bytes_, planes_;
+  std::vector<double> bytes_, texture_bytes_, raw_bytes_, lossless_bytes_, planes_;
+  std::vector<double> costlier_;  ///< 1: than the lossless depth
   std::vector<double> coverages_;
   std::vector<double> point_plane_errors_, depth_errors_;  ///< [m]
   std::vector<double> true_errors_, raw_true_errors_;      ///< [m]

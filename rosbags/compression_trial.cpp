@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "planecloud_slam/plane_fit/depth_codec.h"
 #include "planecloud_slam/plane_fit/depth_traits.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 #include "planecloud_slam/rosbags/stopwatch.h"
@@ -87,12 +88,15 @@ CompressedFrame CompressionTrial::compress(const CompressionItem& item) {
     budget.bytes = static_cast<std::size_t>(options_.plane_fit.byte_budget);
   }
   const Stopwatch fit;
-  const PlaneCloud cloud = fitter_.fit(frame.depth.view(), budget);
+  PlaneCloud cloud = fitter_.fit(frame.depth.view(), budget);
   result.fit_time = fit.elapsed();
   const Stopwatch coding;
-  KeyframePayload payload = encodePayload(cloud, {frame.grey.view(), frame.color.view()},
-                                          {options_.codec, options_.texture});
+  KeyframePayload payload =
+      encodePayload({std::move(cloud), frame.depth.view(), fitter_.options()},
+                    {frame.grey.view(), frame.color.view()}, {options_.codec, options_.texture});
   result.encode_time = coding.elapsed();
+  result.lossless_bytes =
+      encodeDepth(frame.depth.view(), camera_->intrinsics(), fitter_.options()).bytes.size();
   const Stopwatch decoding;
   result.cloud = decode(payload.planes);
   result.decode_time = decoding.elapsed();

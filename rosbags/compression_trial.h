@@ -38,6 +38,7 @@ struct CompressedFrame {
   double decode_time = 0.0;         ///< [s]
   std::size_t bytes = 0;            ///< of the coded planes and the texture
   std::size_t texture_bytes = 0;    ///< of the texture
+  std::size_t lossless_bytes = 0;   ///< of the depth itself (LOSSLESS)
   std::size_t planes = 0;           ///< restored
   double coverage = 0.0;            ///< share of the sensor's depths that have a plane
   double point_plane_error = 0.0;   ///< mean distance of the covered points to their planes [m]

@@ -93,7 +93,7 @@ TEST(KeyframePayload, PlanesAndTextureKeepToOneBudget) {
   options.texture.scale = 0.5;
   for (const int budget : {300, 500, 1000, 2000, 4000, 8000, 50000}) {
     options.codec.byte_budget = budget;
-    const KeyframePayload payload = encodePayload(cloud, {grey.view(), {}}, options);
+    const KeyframePayload payload = encodePayload({cloud, {}, {}}, {grey.view(), {}}, options);
     EXPECT_LE(payload.bytes(), static_cast<std::size_t>(budget));
     EXPECT_LE(static_cast<double>(payload.texture.bytes.size()),
               options.texture.max_share * budget);
@@ -107,11 +107,11 @@ TEST(KeyframePayload, TheTighterOfTwoBudgetsHolds) {
   PayloadOptions options;
   options.codec.byte_budget = 4000;
   const TextureSource images{grey.view(), {}};
-  EXPECT_LE(encodePayload(cloud, images, options, 900).bytes(), 900U);
-  EXPECT_LE(encodePayload(cloud, images, options, 100'000).bytes(), 4000U);
+  EXPECT_LE(encodePayload({cloud, {}, {}}, images, options, 900).bytes(), 900U);
+  EXPECT_LE(encodePayload({cloud, {}, {}}, images, options, 100'000).bytes(), 4000U);
   options.codec.byte_budget = 0;
-  EXPECT_LE(encodePayload(cloud, images, options, 900).bytes(), 900U);
-  EXPECT_GT(encodePayload(cloud, images, options).bytes(), 900U);
+  EXPECT_LE(encodePayload({cloud, {}, {}}, images, options, 900).bytes(), 900U);
+  EXPECT_GT(encodePayload({cloud, {}, {}}, images, options).bytes(), 900U);
 }
 
 }  // namespace
