@@ -33,14 +33,6 @@ std::optional<TileFit> TileFitter::fit(const QuadtreeNode& node) const {
   return measure(rect, plane, origin, count, mean_depth);
 }
 
-bool TileFitter::admits(const QuadtreeNode& node) const {
-  const int count = pyramid_.count(node);
-  if (count == 0 || count < options_.min_fill * pyramid_.area(node)) return false;
-  const TileRect rect = pyramid_.grid().rect(node);
-  if (options_.corner_check != CornerCheck::kNone && !findCorners(rect)) return false;
-  return isInFront(rect, pyramid_.regress(node).cast<float>());
-}
-
 TileFit TileFitter::measure(const QuadtreeNode& node) const {
   TileFit fit;
   fit.plane = pyramid_.regress(node).cast<float>();
@@ -52,8 +44,12 @@ TileFit TileFitter::measure(const QuadtreeNode& node) const {
 }
 
 TileFit TileFitter::estimate(const QuadtreeNode& node) const {
+  return estimate(node, pyramid_.regress(node).cast<float>());
+}
+
+TileFit TileFitter::estimate(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
   TileFit fit;
-  fit.plane = pyramid_.regress(node).cast<float>();
+  fit.plane = plane;
   fit.count = pyramid_.count(node);
   const float depth = 1.0F / pyramid_.meanInverseDepth(node);
   const float error = kMeanOverRms * std::sqrt(pyramid_.meanSquare(node, fit.plane)) * depth;
@@ -62,8 +58,14 @@ TileFit TileFitter::estimate(const QuadtreeNode& node) const {
   return fit;
 }
 
-float TileFitter::distortion(const QuadtreeNode& node) const {
-  const TileFit fit = estimate(node);
+std::optional<float> TileFitter::distortion(const QuadtreeNode& node) const {
+  const int count = pyramid_.count(node);
+  if (count == 0 || count < options_.min_fill * pyramid_.area(node)) return std::nullopt;
+  const TileRect rect = pyramid_.grid().rect(node);
+  if (options_.corner_check != CornerCheck::kNone && !findCorners(rect)) return std::nullopt;
+  const Eigen::Vector3f plane = pyramid_.regress(node).cast<float>();
+  if (!isInFront(rect, plane)) return std::nullopt;
+  const TileFit fit = estimate(node, plane);
   const double sum = options_.along_ray_test ? fit.depth_sum : fit.point_plane_sum;
   return static_cast<float>(sum) / allowedError(1.0F / pyramid_.meanInverseDepth(node));
 }

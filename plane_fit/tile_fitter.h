@@ -29,17 +29,15 @@ class TileFitter {
 
   /// The node's plane; empty when the node has to be subdivided.
   [[nodiscard]] std::optional<TileFit> fit(const QuadtreeNode& node) const;
-  /// Whether the node may be a tile, whatever its error: depth enough and the plane in front of
-  /// the camera all over the tile.
-  [[nodiscard]] bool admits(const QuadtreeNode& node) const;
   /// The node's plane and its error, summed over the pixels; for a node with depth.
   [[nodiscard]] TileFit measure(const QuadtreeNode& node) const;
   /// The same without a look at the pixels: the moments know the mean square of the residuals, and
   /// noise has a mean of 0.8 of its root.
   [[nodiscard]] TileFit estimate(const QuadtreeNode& node) const;
   /// The estimated error that acceptance asks about (along the ray, or only to the plane without
-  /// `along_ray_test`), summed over the node's pixels and in units of the tolerance.
-  [[nodiscard]] float distortion(const QuadtreeNode& node) const;
+  /// `along_ray_test`), summed over the node's pixels and in units of the tolerance. Empty when the
+  /// node cannot be a tile: too little depth, or a plane that is not in front of the camera.
+  [[nodiscard]] std::optional<float> distortion(const QuadtreeNode& node) const;
 
  private:
   /// A pixel with depth: tangents about the tile's origin, inverse depth.
@@ -59,6 +57,8 @@ class TileFitter {
                                                const Eigen::Vector2f& origin, double count,
                                                float mean_depth) const;
   [[nodiscard]] float allowedError(float depth) const;
+  /// `estimate` with the node's regression.
+  [[nodiscard]] TileFit estimate(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
   /// Distance of a node's plane from the origin [m].
   [[nodiscard]] float planeDistance(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
 

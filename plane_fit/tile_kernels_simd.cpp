@@ -89,7 +89,8 @@ void sumCells(const ColumnSums& columns, int cell_width, int cells, DepthSums* s
   scalar::sumCells(columns, cell_width, cell, cells, sums, counts);
 }
 
-template <class D>
+/// `kFills`: rows are whole vectors long.
+template <bool kFills, class D>
 ResidualSums residualsBy(D d, const ResidualQuery& query) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto alpha = hn::Set(d, query.alpha);
@@ -99,10 +100,12 @@ ResidualSums residualsBy(D d, const ResidualQuery& query) {
   auto inverse_depth = zero, relative = zero, depth = zero;
   for (int y = 0; y < query.rows; ++y) {
     for (int x = 0; x < query.width; x += lanes) {
-      // Rows may be read past the tile: those lanes, like pixels without depth, add nothing.
       const std::ptrdiff_t at = y * query.tangents.stride + x;
-      const auto inside = hn::FirstN(d, static_cast<std::size_t>(query.width - x));
-      const auto q = hn::IfThenElseZero(inside, hn::LoadU(d, query.inverse_depth + at));
+      auto q = hn::LoadU(d, query.inverse_depth + at);
+      if constexpr (!kFills) {
+        // Rows may be read past the tile: those lanes, like pixels without depth, add nothing.
+        q = hn::IfThenElseZero(hn::FirstN(d, static_cast<std::size_t>(query.width - x)), q);
+      }
       const auto u = hn::LoadU(d, query.tangents.u + at);
       const auto v = hn::LoadU(d, query.tangents.v + at);
       const auto plane = hn::MulAdd(alpha, u, hn::MulAdd(beta, v, gamma));
@@ -122,10 +125,16 @@ ResidualSums residualsBy(D d, const ResidualQuery& query) {
   return sums;
 }
 
+template <class D>
+ResidualSums residualsWith(D d, const ResidualQuery& query) {
+  const bool fills = query.width % static_cast<int>(hn::Lanes(d)) == 0;
+  return fills ? residualsBy<true>(d, query) : residualsBy<false>(d, query);
+}
+
 ResidualSums residuals(const ResidualQuery& query) {
-  if (query.width <= 4) return residualsBy(hn::CappedTag<float, 4>(), query);
-  if (query.width <= 8) return residualsBy(hn::CappedTag<float, 8>(), query);
-  return residualsBy(hn::CappedTag<float, 16>(), query);
+  if (query.width <= 4) return residualsWith(hn::CappedTag<float, 4>(), query);
+  if (query.width <= 8) return residualsWith(hn::CappedTag<float, 8>(), query);
+  return residualsWith(hn::CappedTag<float, 16>(), query);
 }
 
 const char* targetName() { return hwy::TargetName(HWY_TARGET); }

@@ -3,6 +3,7 @@
 #include "planecloud_slam/plane_fit/tree_pruner.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace planecloud {
 namespace {
@@ -85,14 +86,24 @@ TreePruner::Node& TreePruner::weigh(const QuadtreeNode& node) {
   const auto count = static_cast<float>(pyramid_.count(node));
   Node& state = level(node.level)[index(node)];
   state = {kUncoveredError * count + lambda_ * kNothingBits, Choice::kNothing, true};
-  if (!fitter_.admits(node)) return state;
-  const float distortion = fitter_.distortion(node);
-  if (distortion > kMaxError * count) return state;
-  const double cost = distortion + lambda_ * kTileBits;
-  if (cost >= state.cost) return state;
-  // A split costs at least one more tile.
-  state = {cost, Choice::kTile, distortion > lambda_ * kTileBits};
+  const std::optional<float> distortion = fitter_.distortion(node);
+  if (!distortion || *distortion > kMaxError * count) return state;
+  const double cost = *distortion + lambda_ * kTileBits;
+  // A split makes a tile of each child with depth, or costs far more: is that worth a look?
+  const double least = lambda_ * (kSplitBits + kTileBits * countChildren(node));
+  state = {cost, Choice::kTile, least < cost};
   return state;
+}
+
+int TreePruner::countChildren(const QuadtreeNode& node) const {
+  if (node.level + 1 == pyramid_.grid().levels()) return 0;
+  int children = 0;
+  for (const int row : {2 * node.row, 2 * node.row + 1}) {
+    for (const int column : {2 * node.column, 2 * node.column + 1}) {
+      children += pyramid_.count({node.level + 1, column, row}) > 0 ? 1 : 0;
+    }
+  }
+  return children;
 }
 
 void TreePruner::pushChildren(const QuadtreeNode& node, std::vector<QuadtreeNode>& queue) const {

@@ -39,6 +39,8 @@ class TreePruner {
   void dropFrom(std::vector<QuadtreeNode>& queue, std::size_t first);
   /// Tile or nothing, and whether it is worth a look at the children.
   Node& weigh(const QuadtreeNode& node);
+  /// Children with depth.
+  [[nodiscard]] int countChildren(const QuadtreeNode& node) const;
   void pushChildren(const QuadtreeNode& node, std::vector<QuadtreeNode>& queue) const;
   /// Splits where the children together cost less.
   void merge(const QuadtreeNode& node);
