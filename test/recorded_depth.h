@@ -34,25 +34,36 @@ inline std::filesystem::path recordedDataFolder() {
   return std::filesystem::path(__FILE__).parent_path() / "../../shared/data";
 }
 
+/// Depth images of a sequence in order; none when its folder is missing.
+inline std::vector<std::filesystem::path> recordedDepthFiles(const std::string& sequence) {
+  const std::filesystem::path folder = recordedDataFolder() / sequence / "depth";
+  std::vector<std::filesystem::path> files;
+  if (!std::filesystem::is_directory(folder)) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// One of them [m].
+inline Image<float> readRecordedDepth(const std::filesystem::path& file) {
+  const cv::Mat raw = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  Image<float> depth(raw.cols, raw.rows);
+  std::transform(raw.begin<std::uint16_t>(), raw.end<std::uint16_t>(), depth.begin(),
+                 [](std::uint16_t d) { return static_cast<float>(d) / 5000.0F; });
+  return depth;
+}
+
 /// At most `count` images, evenly spread over the sequence; none when the folder is missing.
 inline RecordedDepth loadRecordedDepth(const std::string& sequence, std::size_t count) {
   RecordedDepth recorded;
   recorded.camera =
       sequence.find("fr1") != std::string::npos ? freiburg1Camera() : freiburg3Camera();
-  const std::filesystem::path folder = recordedDataFolder() / sequence / "depth";
-  if (!std::filesystem::is_directory(folder)) return recorded;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
+  const std::vector<std::filesystem::path> files = recordedDepthFiles(sequence);
   count = std::min(count, files.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const cv::Mat raw = cv::imread(files[i * files.size() / count].string(), cv::IMREAD_UNCHANGED);
-    Image<float> depth(raw.cols, raw.rows);
-    std::transform(raw.begin<std::uint16_t>(), raw.end<std::uint16_t>(), depth.begin(),
-                   [](std::uint16_t d) { return static_cast<float>(d) / 5000.0F; });
-    recorded.depth.push_back(std::move(depth));
+    recorded.depth.push_back(readRecordedDepth(files[i * files.size() / count]));
   }
   return recorded;
 }
