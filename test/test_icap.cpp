@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 
+#include "icap_corridor.h"
 #include "planecloud_slam/icap/icap.h"
 #include "synthetic_planes.h"
 
@@ -15,7 +16,6 @@ namespace {
 constexpr double kNoise = 1.6e-3;  // inverse depth of one pixel, Kinect class [1/m]
 
 Eigen::Isometry3d roomPose() { return lookAlongX({-1.8, -0.3, 1.2}, 0.1, 0.1); }
-Eigen::Isometry3d corridorPose() { return lookAlongX({0.0, 0.1, 1.2}, 0.1, 0.1); }
 
 /// Two views of one world, and where they are to each other.
 struct Pair {
@@ -109,37 +109,27 @@ TEST(Icap, DoesNotDependOnTheWorldsFrame) {
 }
 
 TEST(Icap, LeavesTheCorridorDirectionUnobserved) {
-  const SyntheticPlanes corridor = makeCorridor(false);
-  const Eigen::Vector3d along = corridorPose().linear().transpose() * Eigen::Vector3d::UnitX();
-  std::mt19937 random(5);
+  const Eigen::Vector3d axis = corridorPose().linear().transpose() * Eigen::Vector3d::UnitX();
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const Eigen::Isometry3d T = randomMotion(0.25, 0.15, random);
-    const Pair pair = makePair(corridor, corridorPose(), T, kNoise, seed);
-    const Eigen::Isometry3d guess = T * randomMotion(0.1, 0.087, random);
-    const IcapResult result = icap(pair.target, pair.source, guess);
-    EXPECT_EQ(result.status, IcapStatus::kDegenerate);
-    ASSERT_EQ(result.unobserved.size(), 1U);
+    const CorridorTrial trial = alignInCorridor(false, seed);
+    EXPECT_EQ(trial.result.status, IcapStatus::kDegenerate);
+    ASSERT_EQ(trial.result.unobserved.size(), 1U);
     // The twist lies in the source's axes; 0.05: rotation and noise mix in a little.
-    const Eigen::Vector3d along_source = result.T_target_source.linear().transpose() * along;
-    EXPECT_GT(std::abs(result.unobserved[0].head<3>().dot(along_source)), 0.95);
-    const Eigen::Vector3d drift = result.T_target_source.translation() - guess.translation();
-    EXPECT_LT(std::abs(drift.dot(along)), 0.01) << "the guess is kept within 1 cm";
-    const Eigen::Vector3d error = result.T_target_source.translation() - T.translation();
-    EXPECT_LT((error - error.dot(along) * along).norm(), 0.01) << "across it is observed";
-    EXPECT_LT(angleError(result, T), 0.01);
+    const Eigen::Vector3d along = trial.result.T_target_source.linear().transpose() * axis;
+    EXPECT_GT(std::abs(trial.result.unobserved[0].head<3>().dot(along)), 0.95);
+    EXPECT_LT(std::abs(trial.along), 0.01) << "the guess is kept within 1 cm";
+    EXPECT_LT(trial.across, 0.01) << "across it is observed";
+    EXPECT_LT(trial.turn, 0.01);
   }
 }
 
 TEST(Icap, ObservesTheCorridorDirectionByAnEndWall) {
-  const SyntheticPlanes corridor = makeCorridor(true);
-  std::mt19937 random(6);
   for (unsigned seed = 0; seed < 10; ++seed) {
-    const Eigen::Isometry3d T = randomMotion(0.25, 0.15, random);
-    const Pair pair = makePair(corridor, corridorPose(), T, kNoise, seed);
-    const IcapResult result = icap(pair.target, pair.source, T * randomMotion(0.1, 0.087, random));
-    EXPECT_EQ(result.status, IcapStatus::kConverged);
-    EXPECT_TRUE(result.unobserved.empty());
-    EXPECT_LT(distanceError(result, T), 0.02);  // the wall is 4 m away: 25 mm a pixel
+    const CorridorTrial trial = alignInCorridor(true, seed);
+    EXPECT_EQ(trial.result.status, IcapStatus::kConverged);
+    EXPECT_TRUE(trial.result.unobserved.empty());
+    EXPECT_LT(trial.across, 0.01);
+    EXPECT_LT(std::abs(trial.beside), 0.02);  // the wall is 4 m away: 25 mm a pixel
   }
 }
 
