@@ -8,87 +8,17 @@
 #include <stdexcept>
 
 #include "planecloud_slam/icap/icap_paper.h"
-#include "planecloud_slam/icap/patch_matcher.h"
-#include "planecloud_slam/icap/plane_normal_equations.h"
+#include "planecloud_slam/icap/robust_alignment.h"
 #include "planecloud_slam/icap/visibility.h"
 
 namespace planecloud {
 namespace {
 
-constexpr double kGateShrink = 0.7;     // of the gates from one iteration to the next
-constexpr double kSettledStep = 2e-4;   // norm of a twist that counts as standing still [m, rad]
 constexpr double kRestlessStep = 2e-2;  // a last step beyond has not settled at all [m, rad]
-constexpr double kFineDistance = 0.12;  // gate at which the small pieces take over [m]
-// Of the noise's curvature: what noise alone makes. A direction above is followed, since that is
-// nearer to the truth than the guess more often than not; information takes `observability`.
-constexpr double kFollowed = 1.0;
-// Errors of neighbouring pieces are alike (one tile, one disparity step, one lens), so that many
-// residuals say what one would; found by normalised errors on rendered and real pairs.
-constexpr double kCorrelatedResiduals = 20.0;
-
-/// The annealing of one alignment.
-struct Schedule {
-  MatchGates gates;
-  double kernel_width = 0.0;
-  bool last = false;  ///< the gates are at their final values
-};
-
-Schedule scheduleOf(int iteration, const IcapOptions& options) {
-  const double shrink = std::pow(kGateShrink, iteration);
-  Schedule schedule;
-  schedule.gates.distance = std::max(options.final_distance, options.initial_distance * shrink);
-  schedule.gates.angle = std::max(options.final_angle, options.initial_angle * shrink);
-  schedule.last = schedule.gates.distance <= options.final_distance &&
-                  schedule.gates.angle <= options.final_angle;
-  schedule.kernel_width = options.kernel_width * schedule.gates.distance / options.final_distance;
-  return schedule;
-}
-
-/// Where the iterations stand.
-struct Progress {
-  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
-  std::vector<PatchMatch> matches;
-  PlaneNormalEquations system;
-  Observability observability;
-  double last_step = 0.0;
-  int iterations = 0;
-  bool enough = false;
-};
-
-void iterate(const PatchMatcher& matcher, const Schedule& schedule, const IcapOptions& options,
-             Progress& progress) {
-  progress.matches = matcher.match(progress.T_target_source, schedule.gates);
-  progress.enough = progress.matches.size() >= static_cast<std::size_t>(options.min_matches);
-  if (!progress.enough) return;
-  progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
-                                         schedule.kernel_width, options);
-  progress.observability = analyseObservability(progress.system, options.observability);
-  const Vector6d step = solveObserved(
-      progress.system,
-      analyseObservability(progress.system, std::min(kFollowed, options.observability)));
-  progress.T_target_source = progress.T_target_source * expSe3(step);
-  progress.last_step = step.norm();
-  ++progress.iterations;
-}
-
-Progress alignRobustly(const PlaneSet& target, const PlaneSet& source,
-                       const Eigen::Isometry3d& T_target_source_guess, const IcapOptions& options) {
-  const PatchMatcher coarse(target, source, PlaneSet::Level::kCoarse, options.max_patches);
-  const PatchMatcher fine(target, source, PlaneSet::Level::kFine, options.max_patches);
-  Progress progress;
-  progress.T_target_source = T_target_source_guess;
-  for (int i = 0; i < options.max_iterations; ++i) {
-    const Schedule schedule = scheduleOf(i, options);
-    iterate(schedule.gates.distance > kFineDistance ? coarse : fine, schedule, options, progress);
-    if (!progress.enough) break;
-    if (schedule.last && progress.last_step < kSettledStep) break;
-  }
-  return progress;
-}
 
 /// Information in the observed directions: correlated residuals count less, the unobserved part is
 /// marginalised out, and what does not average out bounds it from above.
-Matrix6d calibratedInformation(const Progress& progress, const IcapOptions& options) {
+Matrix6d calibratedInformation(const AlignmentProgress& progress, const IcapOptions& options) {
   const Eigen::Matrix<double, 6, Eigen::Dynamic>& seen = progress.observability.observed;
   const Eigen::Matrix<double, 6, Eigen::Dynamic>& dark = progress.observability.unobserved;
   if (seen.cols() == 0) return Matrix6d::Zero();
@@ -116,8 +46,8 @@ bool leftTheGuess(const Eigen::Isometry3d& T_target_source_guess, const Eigen::I
            rotationAngle(correction) <= options.max_rotation);
 }
 
-IcapStatus statusOf(const Progress& progress, const Eigen::Isometry3d& T_target_source_guess,
-                    const IcapOptions& options) {
+IcapStatus statusOf(const AlignmentProgress& progress,
+                    const Eigen::Isometry3d& T_target_source_guess, const IcapOptions& options) {
   if (!progress.enough) return IcapStatus::kTooFewPlanes;
   if (!(progress.last_step < kRestlessStep) ||
       leftTheGuess(T_target_source_guess, progress.T_target_source, options)) {
@@ -127,8 +57,9 @@ IcapStatus statusOf(const Progress& progress, const Eigen::Isometry3d& T_target_
                                                       : IcapStatus::kConverged;
 }
 
-IcapResult describe(const PlaneSet& target, const PlaneSet& source, const Progress& progress,
-                    IcapStatus status, const IcapOptions& options) {
+IcapResult describe(const PlaneSet& target, const PlaneSet& source,
+                    const AlignmentProgress& progress, IcapStatus status,
+                    const IcapOptions& options) {
   IcapResult result;
   result.status = status;
   result.iterations = progress.iterations;
@@ -148,10 +79,10 @@ IcapResult describe(const PlaneSet& target, const PlaneSet& source, const Progre
 }
 
 /// Algorithm 2 as printed, judged like the robust form.
-Progress alignPaperForm(const PlaneSet& target, const PlaneSet& source,
-                        const Eigen::Isometry3d& T_target_source_guess,
-                        const IcapOptions& options) {
-  Progress progress;
+AlignmentProgress alignPaperForm(const PlaneSet& target, const PlaneSet& source,
+                                 const Eigen::Isometry3d& T_target_source_guess,
+                                 const IcapOptions& options) {
+  AlignmentProgress progress;
   progress.T_target_source = T_target_source_guess;
   const std::size_t least = static_cast<std::size_t>(options.min_matches);
   if (target.patches(PlaneSet::Level::kWhole).size() < least ||
@@ -190,9 +121,9 @@ std::string toString(IcapStatus status) {
 IcapResult icap(const PlaneSet& target, const PlaneSet& source,
                 const Eigen::Isometry3d& T_target_source_guess, const IcapOptions& options) {
   options.check();
-  Progress progress = options.form == IcapForm::kPaper
-                          ? alignPaperForm(target, source, T_target_source_guess, options)
-                          : alignRobustly(target, source, T_target_source_guess, options);
+  AlignmentProgress progress = options.form == IcapForm::kPaper
+                                   ? alignPaperForm(target, source, T_target_source_guess, options)
+                                   : alignRobustly(target, source, T_target_source_guess, options);
   const IcapStatus status = statusOf(progress, T_target_source_guess, options);
   if (status == IcapStatus::kTooFewPlanes) progress.T_target_source = T_target_source_guess;
   return describe(target, source, progress, status, options);

@@ -37,8 +37,10 @@ void PlaneSetOptions::check() const {
   checkRange("icap/min_tile", min_tile, 1, 64);
   checkRange("icap/max_depth", max_depth, 0.5, 50.0);
   checkRange("icap/min_incidence", min_incidence, 0.0, 0.9);
-  checkRange("icap/normal_length", normal_length, kSmallest, 10.0);
+  checkRange("icap/coarse_kept", coarse_kept, 16, 100000);
+  checkRange("icap/fine_patches", fine_patches, 16, 100000);
   checkRange("icap/depth_noise", depth_noise, 1e-5, 0.1);
+  checkRange("icap/depth_bias", depth_bias, 0.0, 0.1);
   checkRange("icap/noise_correlation", noise_correlation, 1.0, 32.0);
 }
 
@@ -51,9 +53,11 @@ void VisibilityOptions::check() const {
 void IcapOptions::check() const {
   checkRange("icap/max_iterations", max_iterations, 1, 200);
   checkRange("icap/min_matches", min_matches, 3, 10000);
-  checkRange("icap/max_patches", max_patches, 16, 100000);
+  checkRange("icap/coarse_patches", coarse_patches, 16, 100000);
   checkRange("icap/initial_distance", initial_distance, kSmallest, 5.0);
   checkRange("icap/final_distance", final_distance, kSmallest, 5.0);
+  checkRange("icap/coarse_normal_length", coarse_normal_length, kSmallest, 10.0);
+  checkRange("icap/fine_normal_length", fine_normal_length, kSmallest, 10.0);
   checkRange("icap/initial_angle", initial_angle, kSmallest, 3.2);
   checkRange("icap/final_angle", final_angle, kSmallest, 3.2);
   checkRange("icap/distance_floor", distance_floor, kSmallest, 1.0);

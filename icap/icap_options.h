@@ -16,9 +16,12 @@ struct PlaneSetOptions {
   int min_tile = 3;             ///< tiles with a smaller side are left out [px], [1, 64]
   double max_depth = 6.0;       ///< tiles beyond are left out [m], [0.5, 50]
   double min_incidence = 0.12;  ///< least cosine between normal and ray [-], [0, 0.9]
-  double normal_length = 0.3;   ///< makes a difference of unit normals a length [m], (0, 10]
+  int coarse_kept = 512;        ///< pieces of the target in the first stage, [16, 100000]
+  int fine_patches = 1000;      ///< pieces used in the second stage, [16, 100000]
   /// Standard deviation of a pixel's depth divided by the depth squared [1/m], [1e-5, 0.1].
   double depth_noise = 1.6e-3;
+  /// Error of inverse depth that neighbouring pixels share (lens, calibration) [1/m], [0, 0.1].
+  double depth_bias = 0.001;
   /// Pixels this far apart have independent depth errors [px], [1, 32].
   double noise_correlation = 5.0;
 
@@ -29,8 +32,10 @@ struct PlaneSetOptions {
     visit("min_tile", self.min_tile);
     visit("max_depth", self.max_depth);
     visit("min_incidence", self.min_incidence);
-    visit("normal_length", self.normal_length);
+    visit("coarse_kept", self.coarse_kept);
+    visit("fine_patches", self.fine_patches);
     visit("depth_noise", self.depth_noise);
+    visit("depth_bias", self.depth_bias);
     visit("noise_correlation", self.noise_correlation);
   }
   /// Throws std::invalid_argument naming key, value and range.
@@ -67,9 +72,13 @@ struct IcapOptions {
   IcapForm form = IcapForm::kRobust;
   int max_iterations = 30;        ///< all stages together, [1, 200]
   int min_matches = 12;           ///< fewer: too_few_planes, [3, 10000]
-  int max_patches = 400;          ///< source pieces used in a stage, [16, 100000]
-  double initial_distance = 0.5;  ///< matching gate at the start [m], (0, 5]
-  double final_distance = 0.06;   ///< matching gate at the end [m], (0, 5]
+  int coarse_patches = 200;       ///< source pieces used in the first stage, [16, 100000]
+  double initial_distance = 1.2;  ///< matching gate at the start [m], (0, 5]
+  double final_distance = 0.08;   ///< matching gate at the end [m], (0, 5]
+  /// Makes a difference of unit normals a length when patches are matched, in either stage [m],
+  /// (0, 10]: large where the guess is far off, for normals tell more than places then.
+  double coarse_normal_length = 1.0;
+  double fine_normal_length = 0.3;
   double initial_angle = 0.87;    ///< matching gate of normals at the start [rad], (0, 3.2]
   double final_angle = 0.3;       ///< matching gate of normals at the end [rad], (0, 3.2]
   double distance_floor = 0.004;  ///< least standard deviation of a plane distance [m], (0, 1]
@@ -77,7 +86,7 @@ struct IcapOptions {
   double kernel_width = 4.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
   /// A direction counts as observed, and gets information, when its eigenvalue is this many times
   /// what the noise of the normals alone would make [-], [0, 1000]. Noise alone gives 1.
-  double observability = 1.5;
+  double observability = 1.0;
   double max_correction = 1.5;  ///< a longer way from the guess is divergence [m], (0, 100]
   double max_rotation = 0.8;    ///< a larger turn from the guess is divergence [rad], (0, 3.2]
   /// Errors that do not average out (sensor distortion): the standard deviation no observed
@@ -92,9 +101,11 @@ struct IcapOptions {
     visit("form", self.form);
     visit("max_iterations", self.max_iterations);
     visit("min_matches", self.min_matches);
-    visit("max_patches", self.max_patches);
+    visit("coarse_patches", self.coarse_patches);
     visit("initial_distance", self.initial_distance);
     visit("final_distance", self.final_distance);
+    visit("coarse_normal_length", self.coarse_normal_length);
+    visit("fine_normal_length", self.fine_normal_length);
     visit("initial_angle", self.initial_angle);
     visit("final_angle", self.final_angle);
     visit("distance_floor", self.distance_floor);

@@ -18,28 +18,22 @@ struct PatchMatch {
 
 /// How far matched patches may be apart.
 struct MatchGates {
-  double distance = 0.5;  ///< [m]
-  double angle = 0.87;    ///< between normals [rad]
+  double distance = 0.5;       ///< [m]
+  double angle = 0.87;         ///< between normals [rad]
+  double normal_length = 0.3;  ///< makes a difference of unit normals a length [m]
 };
 
-/// Pairs source patches with target patches. The cost of a pair is
-/// (plane distance at the centroid)^2 + (in-plane gap beyond both radii)^2 + (normal_length
-/// |dn|)^2.
-class PatchMatcher {
- public:
-  /// Matches at most `max_patches` source patches of `level`; both sets must outlive the matcher.
-  PatchMatcher(const PlaneSet& target, const PlaneSet& source, PlaneSet::Level level,
-               int max_patches);
+/// The cheapest target of each of the first `count` coarse source patches, in source order, found
+/// anywhere within the gates: for guesses that are far off. See nearestPatch for the cost.
+[[nodiscard]] std::vector<PatchMatch> matchAnywhere(const PlaneSet& target, const PlaneSet& source,
+                                                    const Eigen::Isometry3d& T_target_source,
+                                                    const MatchGates& gates, std::size_t count);
 
-  /// The cheapest target of each source patch that passes the gates, in source order.
-  [[nodiscard]] std::vector<PatchMatch> match(const Eigen::Isometry3d& T_target_source,
-                                              const MatchGates& gates) const;
-
- private:
-  const PlaneSet& target_;
-  const PlaneSet& source_;
-  PlaneSet::Level level_;
-  std::size_t source_count_;
-};
+/// The target tile that each fine source patch falls upon in the target's image, or one close by
+/// in the image when that costs less: for guesses that are nearly right. Much faster, and knows the
+/// true extents of tiles.
+[[nodiscard]] std::vector<PatchMatch> matchInView(const PlaneSet& target, const PlaneSet& source,
+                                                  const Eigen::Isometry3d& T_target_source,
+                                                  const MatchGates& gates);
 
 }  // namespace planecloud

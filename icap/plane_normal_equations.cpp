@@ -10,8 +10,6 @@
 namespace planecloud {
 namespace {
 
-using Matrix3x6d = Eigen::Matrix<double, 3, 6>;
-
 /// Geman-McClure: weight of a residual of `squared` standard deviations^2.
 double kernelWeight(double squared, double width) {
   const double root = 1.0 / (1.0 + squared / (width * width));
@@ -53,26 +51,60 @@ Residual residualOf(const PlanePatch& target, const PlanePatch& source,
   return r;
 }
 
-void addDistance(const Residual& r, double weight, PlaneNormalEquations& system) {
-  Matrix3x6d motion;  // of the point under a twist
-  motion << Eigen::Matrix3d::Identity(), -skew(r.point);
-  const Vector6d jacobian = motion.transpose() * r.normal;
-  system.hessian.noalias() += weight * jacobian * jacobian.transpose();
-  system.gradient += weight * r.distance * jacobian;
-  const Eigen::Matrix3d spread =
-      weight * r.normal_variance * (Eigen::Matrix3d::Identity() - r.normal * r.normal.transpose());
-  system.noise.noalias() += motion.transpose() * spread * motion;
-}
+/// Sums over matches from which the system is made: some hundred bytes instead of products of
+/// matrices for every match.
+class Sums {
+ public:
+  void addDistance(const Residual& r, double weight) {
+    Vector6d jacobian;  // of the distance by a twist
+    jacobian << r.normal, r.point.cross(r.normal);
+    const double spread = weight * r.normal_variance;
+    hessian_.noalias() += weight * jacobian * jacobian.transpose();
+    spread_along_.noalias() += spread * jacobian * jacobian.transpose();
+    gradient_ += weight * r.distance * jacobian;
+    spread_ += spread;
+    spread_point_ += spread * r.point;
+    spread_square_.noalias() += spread * r.point * r.point.transpose();
+  }
 
-void addNormal(const Residual& r, const Eigen::Vector3d& source_normal, double weight,
-               double normal_variance, PlaneNormalEquations& system) {
-  // n + phi x n - m = difference - [n]x phi, and [n]x^T [n]x = I - n n^T.
-  const Eigen::Matrix3d dyad = source_normal * source_normal.transpose();
-  system.hessian.bottomRightCorner<3, 3>() += weight * (Eigen::Matrix3d::Identity() - dyad);
-  system.gradient.tail<3>() += weight * source_normal.cross(r.difference);
-  system.noise.bottomRightCorner<3, 3>() +=
-      weight * normal_variance * (Eigen::Matrix3d::Identity() + dyad);
-}
+  void addNormal(const Residual& r, const Eigen::Vector3d& source_normal, double weight,
+                 double normal_variance) {
+    // n + phi x n - m = difference - [n]x phi, and [n]x^T [n]x = I - n n^T.
+    const Eigen::Matrix3d dyad = source_normal * source_normal.transpose();
+    weight_ += weight;
+    dyads_ += weight * dyad;
+    weight_variance_ += weight * normal_variance;
+    dyads_variance_ += weight * normal_variance * dyad;
+    gradient_.tail<3>() += weight * source_normal.cross(r.difference);
+  }
+
+  void finish(PlaneNormalEquations& system) const {
+    const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+    system.hessian = hessian_;
+    system.hessian.bottomRightCorner<3, 3>() += weight_ * identity - dyads_;
+    system.gradient = gradient_;
+    // Across its normal a point's motion under a twist, [I, -[p]x], turns into distance by the
+    // error of the normal: sum of s M^T (I - n n^T) M.
+    system.noise.topLeftCorner<3, 3>() = spread_ * identity;
+    system.noise.topRightCorner<3, 3>() = -skew(spread_point_);
+    system.noise.bottomLeftCorner<3, 3>() = skew(spread_point_);
+    system.noise.bottomRightCorner<3, 3>() = spread_square_.trace() * identity - spread_square_;
+    system.noise -= spread_along_;
+    system.noise.bottomRightCorner<3, 3>() += weight_variance_ * identity + dyads_variance_;
+  }
+
+ private:
+  Matrix6d hessian_ = Matrix6d::Zero();
+  Vector6d gradient_ = Vector6d::Zero();
+  Matrix6d spread_along_ = Matrix6d::Zero();
+  double spread_ = 0.0;
+  Eigen::Vector3d spread_point_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d spread_square_ = Eigen::Matrix3d::Zero();
+  double weight_ = 0.0;
+  Eigen::Matrix3d dyads_ = Eigen::Matrix3d::Zero();
+  double weight_variance_ = 0.0;
+  Eigen::Matrix3d dyads_variance_ = Eigen::Matrix3d::Zero();
+};
 
 }  // namespace
 
@@ -80,6 +112,7 @@ PlaneNormalEquations buildNormalEquations(const std::vector<PatchMatch>& matches
                                           const Eigen::Isometry3d& T_target_source,
                                           double kernel_width, const IcapOptions& options) {
   PlaneNormalEquations system;
+  Sums sums;
   const Eigen::Isometry3d T_source_target = T_target_source.inverse();
   for (const PatchMatch& match : matches) {
     const PlanePatch& target = *match.target;
@@ -91,12 +124,13 @@ PlaneNormalEquations buildNormalEquations(const std::vector<PatchMatch>& matches
     const double weight = kernelWeight(squared, kernel_width);
     const double squared_normal = r.difference.squaredNorm() / normal_variance;
     const double joint_weight = weight * kernelWeight(squared_normal, kernel_width);
-    addDistance(r, joint_weight / r.distance_variance, system);
-    addNormal(r, source.normal, joint_weight / normal_variance, normal_variance, system);
+    sums.addDistance(r, joint_weight / r.distance_variance);
+    sums.addNormal(r, source.normal, joint_weight / normal_variance, normal_variance);
     system.weighted_error += weight * squared;
     system.weight += weight;
     system.squared_distance += r.distance * r.distance;
   }
+  sums.finish(system);
   return system;
 }
 
@@ -113,6 +147,11 @@ Observability analyseObservability(const PlaneNormalEquations& system, double fa
   result.unobserved = basis.leftCols(dark);
   result.observed = basis.rightCols(6 - dark);
   return result;
+}
+
+Vector6d leastObserved(const PlaneNormalEquations& system) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> eigen(system.hessian, system.noise);
+  return eigen.eigenvectors().col(0).normalized();
 }
 
 Vector6d solveObserved(const PlaneNormalEquations& system, const Observability& observability) {

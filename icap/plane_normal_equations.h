@@ -40,6 +40,9 @@ struct Observability {
 /// against noise): a direction is observed when its curvature exceeds `factor` times the noise's.
 [[nodiscard]] Observability analyseObservability(const PlaneNormalEquations& system, double factor);
 
+/// The unit twist whose curvature exceeds the noise's least.
+[[nodiscard]] Vector6d leastObserved(const PlaneNormalEquations& system);
+
 /// The Gauss-Newton step within the observed directions; zero along the others.
 [[nodiscard]] Vector6d solveObserved(const PlaneNormalEquations& system,
                                      const Observability& observability);

@@ -6,11 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
-
-#include "planecloud_slam/icap/kd_tree.h"
 
 namespace planecloud {
 namespace {
@@ -18,7 +17,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kLevels = 3;
 constexpr int kCell = 4;  // side of a cell of the pixel-to-tile map [px]
-constexpr int kNoLimit = 1 << 14;
+constexpr int kNoLimit = std::numeric_limits<int>::max();
+// Smaller tiles know too little of their normals to find a partner by it [px].
+constexpr int kLeastCoarseTile = 8;
 
 /// Scatters neighbouring rectangles over [0, 2^32): the finaliser of MurmurHash3.
 std::uint32_t scatter(const TileRect& rect) {
@@ -28,42 +29,67 @@ std::uint32_t scatter(const TileRect& rect) {
   return h ^ (h >> 16);
 }
 
+/// A part of a tile that becomes a patch.
+struct Piece {
+  std::uint32_t order = 0;  // among its like
+  TileRect rect;
+  const PlanarTile* tile = nullptr;
+};
+
+void sortScattered(std::vector<Piece>& pieces) {
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
+    return std::tie(a.order, a.rect.y, a.rect.x) < std::tie(b.order, b.rect.y, b.rect.x);
+  });
+}
+
+/// Which pieces make a level.
+struct PieceLimits {
+  int min_tile = 0;  // tiles with a smaller side are left out [px]
+  int max_side = 0;  // of a piece [px]
+  int count = 0;     // pieces kept
+};
+
 /// Makes patches of tiles under one camera and one set of options.
 class PatchMaker {
  public:
   PatchMaker(const CameraIntrinsics& camera, const PlaneSetOptions& options)
       : camera_(camera), options_(options) {}
 
-  /// Appends the pieces of the tile that are fit for alignment.
-  void cut(const PlanarTile& tile, int max_side, std::vector<PlanePatch>& patches) const {
+  /// The patches of a level, see PlaneSet::patches.
+  void sample(const std::vector<PlanarTile>& tiles, const PieceLimits& limits,
+              std::vector<PlanePatch>& patches) const {
+    std::vector<Piece> pieces;
+    for (const PlanarTile& tile : tiles) cut(tile, limits, pieces);
+    sortScattered(pieces);
+    for (const Piece& piece : pieces) {
+      if (patches.size() >= static_cast<std::size_t>(limits.count)) break;
+      add(piece, patches);
+    }
+  }
+
+ private:
+  void cut(const PlanarTile& tile, const PieceLimits& limits, std::vector<Piece>& pieces) const {
     const TileRect& rect = tile.rect;
     requireInside(rect);
-    if (std::min(rect.width, rect.height) < options_.min_tile) return;
-    const int columns = (rect.width + max_side - 1) / max_side;
-    const int rows = (rect.height + max_side - 1) / max_side;
+    if (std::min(rect.width, rect.height) < limits.min_tile) return;
+    const int columns = 1 + (rect.width - 1) / limits.max_side;
+    const int rows = 1 + (rect.height - 1) / limits.max_side;
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         const int x0 = rect.x + rect.width * column / columns;
         const int x1 = rect.x + rect.width * (column + 1) / columns;
         const int y0 = rect.y + rect.height * row / rows;
         const int y1 = rect.y + rect.height * (row + 1) / rows;
-        add(tile, {x0, y0, x1 - x0, y1 - y0}, patches);
+        const TileRect piece{x0, y0, x1 - x0, y1 - y0};
+        pieces.push_back({scatter(piece), piece, &tile});
       }
     }
   }
 
- private:
-  void requireInside(const TileRect& rect) const {
-    if (rect.x >= 0 && rect.y >= 0 && rect.width > 0 && rect.height > 0 &&
-        rect.x <= camera_.width - rect.width && rect.y <= camera_.height - rect.height) {
-      return;
-    }
-    throw std::invalid_argument(
-        "PlaneSet: a tile lies outside its image; decode clouds that came "
-        "over a network with the checked decoder");
-  }
-
-  void add(const PlanarTile& tile, const TileRect& rect, std::vector<PlanePatch>& patches) const {
+  /// Appends the patch of a piece when it is fit for alignment.
+  void add(const Piece& piece, std::vector<PlanePatch>& patches) const {
+    const PlanarTile& tile = *piece.tile;
+    const TileRect& rect = piece.rect;
     const Eigen::Vector3d coefficients = tile.inverse_depth.cast<double>();
     const std::optional<Eigen::Vector2d> uv =
         tangentsAt(camera_, rect.x + 0.5 * (rect.width - 1), rect.y + 0.5 * (rect.height - 1));
@@ -84,6 +110,16 @@ class PatchMaker {
     patches.push_back(patch);
   }
 
+  void requireInside(const TileRect& rect) const {
+    if (rect.x >= 0 && rect.y >= 0 && rect.width > 0 && rect.height > 0 &&
+        rect.x <= camera_.width - rect.width && rect.y <= camera_.height - rect.height) {
+      return;
+    }
+    throw std::invalid_argument(
+        "PlaneSet: a tile lies outside its image; decode clouds that came "
+        "over a network with the checked decoder");
+  }
+
   /// Covariance of the regression `q = alpha u + beta v + gamma` over the whole tile, whose
   /// inverse depths have standard deviation `depth_noise`.
   void setNoise(const PlanarTile& tile, PlanePatch& patch) const {
@@ -97,7 +133,8 @@ class PatchMaker {
     const double off_y = patch.rect.y + 0.5 * patch.rect.height - tile.rect.y - 0.5 * height;
     const double spread =
         1.0 + 12.0 * (off_x * off_x / (width * width) + off_y * off_y / (height * height));
-    patch.distance_sigma = sigma_q * z * patch.d * std::sqrt(spread);
+    patch.distance_sigma =
+        z * patch.d * std::hypot(sigma_q * std::sqrt(spread), options_.depth_bias);
     const double sigma_alpha = sigma_q * std::sqrt(12.0) * camera_.fx / width;
     const double sigma_beta = sigma_q * std::sqrt(12.0) * camera_.fy / height;
     patch.normal_sigma = patch.d * std::hypot(sigma_alpha, sigma_beta) / std::sqrt(2.0);
@@ -107,31 +144,7 @@ class PatchMaker {
   const PlaneSetOptions& options_;
 };
 
-Eigen::Matrix<float, 6, 1> joined(const Eigen::Vector3d& centroid, const Eigen::Vector3d& normal,
-                                  double normal_length) {
-  Eigen::Matrix<float, 6, 1> point;
-  point << centroid.cast<float>(), (normal_length * normal).cast<float>();
-  return point;
-}
-
-std::unique_ptr<const KdTree<6>> makeIndex(const std::vector<PlanePatch>& patches,
-                                           double normal_length) {
-  std::vector<Eigen::Matrix<float, 6, 1>> points;
-  points.reserve(patches.size());
-  for (const PlanePatch& patch : patches) {
-    points.push_back(joined(patch.centroid, patch.normal, normal_length));
-  }
-  return std::make_unique<const KdTree<6>>(std::move(points));
-}
-
 std::size_t indexOf(PlaneSet::Level level) { return static_cast<std::size_t>(level); }
-
-void sortScattered(std::vector<PlanePatch>& patches) {
-  std::sort(patches.begin(), patches.end(), [](const PlanePatch& a, const PlanePatch& b) {
-    return std::make_tuple(scatter(a.rect), a.rect.y, a.rect.x) <
-           std::make_tuple(scatter(b.rect), b.rect.y, b.rect.x);
-  });
-}
 
 Image<std::int32_t> mapCells(const std::vector<PlanePatch>& patches, const CameraIntrinsics& k) {
   Image<std::int32_t> cells((k.width + kCell - 1) / kCell, (k.height + kCell - 1) / kCell, -1);
@@ -150,13 +163,9 @@ Image<std::int32_t> mapCells(const std::vector<PlanePatch>& patches, const Camer
 }  // namespace
 
 struct PlaneSet::Contents {
-  Contents() {
-    for (std::unique_ptr<const KdTree<6>>& index : indices) index = makeIndex({}, 1.0);
-  }
   CameraIntrinsics camera;
-  double normal_length = 1.0;
   std::array<std::vector<PlanePatch>, kLevels> patches;
-  std::array<std::unique_ptr<const KdTree<6>>, kLevels> indices;
+  PatchColumns coarse_columns;
   Image<std::int32_t> cells;
 };
 
@@ -167,15 +176,18 @@ PlaneSet::PlaneSet(const PlaneCloud& cloud, const PlaneSetOptions& options) {
   cloud.camera.check();
   const std::shared_ptr<Contents> contents = std::make_shared<Contents>();
   contents->camera = cloud.camera;
-  contents->normal_length = options.normal_length;
   const PatchMaker maker(cloud.camera, options);
-  const std::array<int, kLevels> max_sides{options.coarse_tile, options.fine_tile, kNoLimit};
+  const std::array<PieceLimits, kLevels> limits{
+      {{std::max(options.min_tile, kLeastCoarseTile), options.coarse_tile, options.coarse_kept},
+       {options.min_tile, options.fine_tile, options.fine_patches},
+       {options.min_tile, kNoLimit, kNoLimit}}};
   for (std::size_t level = 0; level < kLevels; ++level) {
-    std::vector<PlanePatch>& patches = contents->patches[level];
-    for (const PlanarTile& tile : cloud.tiles) maker.cut(tile, max_sides[level], patches);
-    sortScattered(patches);
-    contents->indices[level] = makeIndex(patches, options.normal_length);
+    maker.sample(cloud.tiles, limits[level], contents->patches[level]);
   }
+  for (const PlanePatch& patch : contents->patches[indexOf(Level::kCoarse)]) {
+    contents->coarse_columns.add(patch.centroid, patch.normal, patch.radius);
+  }
+  contents->coarse_columns.pad();
   contents->cells = mapCells(contents->patches[indexOf(Level::kWhole)], cloud.camera);
   contents_ = contents;
 }
@@ -196,13 +208,6 @@ int PlaneSet::patchAt(int x, int y) const {
   return contents_->cells(x / kCell, y / kCell);
 }
 
-const KdTree<6>& PlaneSet::index(Level level) const { return *contents_->indices[indexOf(level)]; }
-
-double PlaneSet::normalLength() const { return contents_->normal_length; }
-
-Eigen::Matrix<float, 6, 1> PlaneSet::matchingPoint(const Eigen::Vector3d& centroid,
-                                                   const Eigen::Vector3d& normal) const {
-  return joined(centroid, normal, contents_->normal_length);
-}
+const PatchColumns& PlaneSet::coarseColumns() const { return contents_->coarse_columns; }
 
 }  // namespace planecloud

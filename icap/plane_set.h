@@ -8,14 +8,12 @@
 #include <vector>
 
 #include "planecloud_slam/icap/icap_options.h"
+#include "planecloud_slam/icap/patch_search.h"
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
 namespace planecloud {
-
-template <int Dimension>
-class KdTree;
 
 /// A tile, or a piece of one, as alignment wants it. All in the keyframe's optical frame.
 struct PlanePatch {
@@ -30,9 +28,9 @@ struct PlanePatch {
   TileRect rect;                ///< pixels it was seen through
 };
 
-/// A plane cloud prepared for alignment: its tiles cut to two piece sizes, a search index over
-/// each, and a map from pixels to tiles. Immutable and cheap to copy (copies share everything); may
-/// be read from several threads.
+/// A plane cloud prepared for alignment: its tiles cut to two piece sizes, of the finer a fair
+/// sample (PlaneSetOptions), and a map from pixels to tiles. Immutable and cheap to copy (copies
+/// share everything); may be read from several threads.
 class PlaneSet {
  public:
   /// Pieces of at most `coarse_tile`, of at most `fine_tile` pixels a side, or whole tiles.
@@ -58,15 +56,8 @@ class PlaneSet {
   /// What a point with z > 0 projects to [px], lens distortion included.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& point) const;
 
-  /// Search index over `matchingPoint` of each patch of a level, in their order.
-  [[nodiscard]] const KdTree<6>& index(Level level) const;
-
-  /// What makes a difference of unit normals a length [m] (PlaneSetOptions).
-  [[nodiscard]] double normalLength() const;
-
-  /// Centroid and normal as one point whose distances are lengths [m]: (c, normal_length n).
-  [[nodiscard]] Eigen::Matrix<float, 6, 1> matchingPoint(const Eigen::Vector3d& centroid,
-                                                         const Eigen::Vector3d& normal) const;
+  /// `patches(Level::kCoarse)` laid out for nearestPatch, in their order.
+  [[nodiscard]] const PatchColumns& coarseColumns() const;
 
  private:
   struct Contents;

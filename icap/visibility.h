@@ -9,7 +9,7 @@
 
 namespace planecloud {
 
-/// What the target's camera says of the source's coarse pieces once they are moved into its frame.
+/// What the target's camera says of the source's fine pieces once they are moved into its frame.
 /// Shares are weighted by the pixels of the pieces.
 struct VisibilityReport {
   double total = 0.0;         ///< all pieces of the source [px]

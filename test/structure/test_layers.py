@@ -35,7 +35,7 @@ LIBRARIES = (
 CORE = {"std", "Eigen"}
 ALLOWED = {  # part: (libraries, components)
     "plane_fit": (CORE | {"SIMD"}, {"plane_fit"}),
-    "icap": (CORE | {"nanoflann"}, {"plane_fit", "icap"}),
+    "icap": (CORE | {"nanoflann", "SIMD"}, {"plane_fit", "icap"}),
     "frontend core": (CORE | {"OpenCV", "SIMD"}, {"plane_fit", "frontend_node"}),
     "backend core": (CORE | {"Ceres", "SQLite", "PCL", "OpenCV"},
                      {"plane_fit", "icap", "backend_node"}),
