@@ -20,8 +20,11 @@
 namespace planecloud {
 namespace {
 
-/// Keyframes kept prepared for alignment.
-constexpr std::size_t kPreparedKeyframes = 256;
+/// Keyframes kept prepared for alignment, at a few hundred kilobytes each.
+constexpr std::size_t kPreparedKeyframes = 48;
+
+/// Of the map: how much it grows before it is worth to optimise it as a whole again.
+constexpr double kLeastGrowth = 0.02;
 
 BackendOptions checked(BackendOptions options) {
   options.check();
@@ -57,20 +60,38 @@ class Backend::Impl {
       return result;
     }
     sessions_.record(keyframe);
-    const int node = map_.add(std::move(keyframe), std::move(check.planes));
+    const int node = map_.add(std::move(keyframe), *check.planes);
     result.status = InsertionStatus::kInserted;
     changed();
+    ++added_;
     if (options_.loop_closure.candidates.enabled) closeLoops(node, result);
     if (!result.closures.empty()) {
-      optimize();
+      optimizeAround(result.closures);
       result.optimised = true;
     }
     return result;
   }
 
   void optimize() {
-    const std::size_t removed = map_.graph().optimize().removed.size();
-    if (removed > 0) rejected_["found_false_later"] += removed;
+    countRemoved(map_.graph().optimize().removed.size());
+    optimised();
+  }
+
+  [[nodiscard]] bool optimisationDue() const {
+    return !settled_ && static_cast<double>(added_) >= kLeastGrowth * map_.graph().size();
+  }
+
+  [[nodiscard]] GraphOptimisation startOptimisation() {
+    optimised();
+    return GraphOptimisation(map_.graph());
+  }
+
+  void finishOptimisation(const GraphOptimisation& optimisation) {
+    const PoseGraph& copy = optimisation.graph();
+    const bool known =
+        copy.size() > 0 && copy.size() <= map_.graph().size() && copy.id(0) == map_.graph().id(0);
+    if (!known) return;
+    countRemoved(map_.graph().adopt(copy, optimisation.summary()).size());
     changed();
   }
 
@@ -98,6 +119,30 @@ class Backend::Impl {
   }
 
  private:
+  /// A small map is optimised as a whole, which is what its window would be.
+  void optimizeAround(const std::vector<GraphEdge>& closures) {
+    if (map_.graph().size() <= options_.graph.local_window) return optimize();
+    std::vector<int> ends;
+    for (const GraphEdge& closure : closures) {
+      ends.push_back(map_.graph().find(closure.to).value());
+      ends.push_back(map_.graph().find(closure.from).value());
+    }
+    map_.graph().optimizeAround(ends);
+    settled_ = false;
+    changed();
+  }
+
+  void countRemoved(std::size_t removed) {
+    if (removed > 0) rejected_["found_false_later"] += removed;
+  }
+
+  /// All that is known so far is in an optimisation of the whole.
+  void optimised() {
+    settled_ = true;
+    added_ = 0;
+    changed();
+  }
+
   void changed() {
     ++revision_;
     snapshot_.reset();
@@ -167,6 +212,8 @@ class Backend::Impl {
   JoinCheck join_check_;
   PlaneSetCache plane_sets_;
   std::map<std::string, std::size_t> rejected_;
+  bool settled_ = true;    ///< no closures wait for an optimisation of the whole
+  std::size_t added_ = 0;  ///< keyframes since the last optimisation of the whole
   std::uint64_t revision_ = 0;
   std::shared_ptr<const MapSnapshot> snapshot_;  ///< of `revision_`, null until asked for
 };
@@ -178,6 +225,11 @@ Backend& Backend::operator=(Backend&&) noexcept = default;
 
 InsertionResult Backend::insert(Keyframe keyframe) { return impl_->insert(std::move(keyframe)); }
 void Backend::optimize() { impl_->optimize(); }
+bool Backend::optimisationDue() const { return impl_->optimisationDue(); }
+GraphOptimisation Backend::startOptimisation() { return impl_->startOptimisation(); }
+void Backend::finishOptimisation(const GraphOptimisation& optimisation) {
+  impl_->finishOptimisation(optimisation);
+}
 void Backend::reset() { impl_->reset(); }
 std::shared_ptr<const MapSnapshot> Backend::snapshot() const { return impl_->snapshot(); }
 BackendStatistics Backend::statistics() const { return impl_->statistics(); }

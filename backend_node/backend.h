@@ -6,10 +6,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planecloud_slam/backend_node/backend_options.h"
 #include "planecloud_slam/backend_node/map_snapshot.h"
+#include "planecloud_slam/backend_node/pose_graph.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 
 namespace planecloud {
@@ -39,6 +41,23 @@ struct BackendStatistics {
   int components = 0;
 };
 
+/// An optimisation of the whole graph apart from the backend: take it with
+/// Backend::startOptimisation, run it anywhere, give it back to Backend::finishOptimisation.
+class GraphOptimisation {
+ public:
+  explicit GraphOptimisation(PoseGraph graph) : graph_(std::move(graph)) {}
+
+  /// May take seconds. Touches nothing but itself, so that it can run on a thread of its own.
+  void run() { summary_ = graph_.optimize(); }
+
+  [[nodiscard]] const PoseGraph& graph() const { return graph_; }
+  [[nodiscard]] const OptimisationSummary& summary() const { return summary_; }
+
+ private:
+  PoseGraph graph_;
+  OptimisationSummary summary_;
+};
+
 /// The global map: pose graph, loop closures, optimisation (paper sec. 3.1, 3.2, 3.4).
 /// No threads, no clock, no logging; calls from one thread only, snapshots may be read from any.
 class Backend {
@@ -49,11 +68,20 @@ class Backend {
   Backend(Backend&&) noexcept;
   Backend& operator=(Backend&&) noexcept;
 
-  /// Adds a keyframe, looks for closures, optimises when it found any. Never throws for bad data.
+  /// Adds a keyframe, looks for closures, optimises around those it found. Never throws for bad
+  /// data.
   InsertionResult insert(Keyframe keyframe);
 
   /// Optimises the whole graph.
   void optimize();
+
+  /// Whether closures came in that only a window around them knows of, and the map has grown
+  /// enough since the last time to be worth an optimisation as a whole.
+  [[nodiscard]] bool optimisationDue() const;
+  /// A copy of the graph to be optimised while keyframes go on coming in.
+  [[nodiscard]] GraphOptimisation startOptimisation();
+  /// Takes over the result. Does nothing when the map was reset meanwhile.
+  void finishOptimisation(const GraphOptimisation& optimisation);
 
   /// Forgets everything.
   void reset();

@@ -79,6 +79,7 @@ void LoopClosureOptions::check() const {
 void PoseGraphOptions::check() const {
   checkRange("graph/kernel_width", kernel_width, 1e-3, 100.0);
   checkRange("graph/max_iterations", max_iterations, 1, 1000);
+  checkRange("graph/local_window", local_window, 10, 100000);
   checkRange("graph/threads", threads, 1, 256);
   checkRange("graph/odometry_translation_floor", odometry_translation_floor, 0.0, 1.0);
   checkRange("graph/odometry_rotation_floor", odometry_rotation_floor, 0.0, 1.0);

@@ -26,7 +26,10 @@ struct PoseGraphOptions {
   RobustKernel kernel = RobustKernel::kCauchy;
   double kernel_width = 3.0;  ///< error where an edge begins to lose weight [sigma], (0, 100]
   int max_iterations = 50;    ///< [1, 1000]
-  int threads = 1;            ///< more than one: results may differ in the last bits, [1, 256]
+  /// Keyframes around a new closure that are optimised at once; a larger map is optimised as a
+  /// whole later (Backend::optimisationDue), [10, 100000].
+  int local_window = 400;
+  int threads = 1;  ///< more than one: results may differ in the last bits, [1, 256]
   /// Errors of the frontend's edges that do not average out over pixels: their standard deviation
   /// goes below neither of these [m], [0, 1], and [rad], [0, 1].
   double odometry_translation_floor = 0.005;
@@ -40,6 +43,7 @@ struct PoseGraphOptions {
     visit("kernel", self.kernel);
     visit("kernel_width", self.kernel_width);
     visit("max_iterations", self.max_iterations);
+    visit("local_window", self.local_window);
     visit("threads", self.threads);
     visit("odometry_translation_floor", self.odometry_translation_floor);
     visit("odometry_rotation_floor", self.odometry_rotation_floor);

@@ -45,9 +45,9 @@ std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
       const Eigen::Isometry3d T_target_source =
           graph.pose(target).inverse() * join.T_target_source * graph.pose(source);
       if (T_target_source.translation().norm() > kLargestPairDistance) continue;
-      const double overlap = mutualViewOverlap(
-          *records[static_cast<std::size_t>(target)].keyframe->planes,
-          *records[static_cast<std::size_t>(source)].keyframe->planes, T_target_source);
+      const double overlap =
+          mutualViewOverlap(records[static_cast<std::size_t>(target)].sketch,
+                            records[static_cast<std::size_t>(source)].sketch, T_target_source);
       if (overlap <= best_overlap) continue;
       best_overlap = overlap;
       best = {target, source, T_target_source};

@@ -28,11 +28,11 @@ std::vector<GraphEdge> graphEdges(const Keyframe& keyframe) {
 
 }  // namespace
 
-int KeyframeMap::add(Keyframe keyframe, std::shared_ptr<const PlaneCloud> planes) {
+int KeyframeMap::add(Keyframe keyframe, const PlaneCloud& planes) {
   const KeyframeId id = keyframe.id;
   std::vector<GraphEdge> edges = graphEdges(keyframe);
   const int node = graph_.addNode(id, initialPose(keyframe, edges));
-  records_.push_back(makeRecord(std::move(keyframe), std::move(planes)));
+  records_.push_back(makeRecord(std::move(keyframe), planes));
   by_session_.emplace(id, node);
   const auto waited = waiting_.find(id);
   if (waited != waiting_.end()) {
@@ -47,7 +47,7 @@ int KeyframeMap::add(Keyframe keyframe, std::shared_ptr<const PlaneCloud> planes
       waiting_[edge.from].push_back(edge);
     }
   }
-  level(node);
+  level(node, planes);
   return node;
 }
 
@@ -72,8 +72,7 @@ Eigen::Isometry3d KeyframeMap::initialPose(const Keyframe& keyframe,
   return graph_.pose(*before) * known.T_odom_camera.inverse() * keyframe.T_odom_camera;
 }
 
-KeyframeRecord KeyframeMap::makeRecord(Keyframe keyframe,
-                                       std::shared_ptr<const PlaneCloud> planes) const {
+KeyframeRecord KeyframeMap::makeRecord(Keyframe keyframe, const PlaneCloud& planes) const {
   KeyframeRecord record;
   if (const std::optional<int> before = predecessor(keyframe.id)) {
     const KeyframeRecord& known = records_[static_cast<std::size_t>(*before)];
@@ -84,8 +83,10 @@ KeyframeRecord KeyframeMap::makeRecord(Keyframe keyframe,
   map_keyframe->id = keyframe.id;
   map_keyframe->stamp = keyframe.stamp;
   map_keyframe->T_odom_camera = keyframe.T_odom_camera;
-  map_keyframe->planes = std::move(planes);
+  keyframe.edges = {};  // they are in the graph
   map_keyframe->keyframe = std::make_shared<const Keyframe>(std::move(keyframe));
+  map_keyframe->planes = MapPlanes(map_keyframe->keyframe);
+  record.sketch = sketchView(planes);
   record.keyframe = std::move(map_keyframe);
   return record;
 }
@@ -104,7 +105,7 @@ void KeyframeMap::connect(const GraphEdge& edge) {
   graph_.addEdge(edge);
 }
 
-void KeyframeMap::level(int node) {
+void KeyframeMap::level(int node, const PlaneCloud& planes) {
   if (!frame_.level_with_floor) return;
   const int component = graph_.component(node);
   int oldest = -1;
@@ -118,7 +119,7 @@ void KeyframeMap::level(int node) {
   const MapKeyframe& keyframe = *records_[static_cast<std::size_t>(node)].keyframe;
   const Eigen::Vector3d up_odom = keyframe.T_odom_camera.linear().row(2).transpose();
   const std::optional<Eigen::Vector3d> floor =
-      findFloorNormal(*keyframe.planes, up_odom, frame_.max_floor_tilt);
+      findFloorNormal(planes, up_odom, frame_.max_floor_tilt);
   if (!floor) return;
   const Eigen::Vector3d up_map = graph_.pose(node).linear() * *floor;
   const Eigen::Isometry3d& T_map_oldest = graph_.pose(oldest);

@@ -25,7 +25,7 @@ class KeyframeMap {
 
   /// Adds a checked keyframe with its decoded planes, its edges and those that waited for it.
   /// Returns its node number. Throws std::invalid_argument when its id is there already.
-  int add(Keyframe keyframe, std::shared_ptr<const PlaneCloud> planes);
+  int add(Keyframe keyframe, const PlaneCloud& planes);
 
   [[nodiscard]] PoseGraph& graph() { return graph_; }
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
@@ -38,10 +38,9 @@ class KeyframeMap {
   [[nodiscard]] std::optional<int> predecessor(const KeyframeId& id) const;
   [[nodiscard]] Eigen::Isometry3d initialPose(const Keyframe& keyframe,
                                               const std::vector<GraphEdge>& edges) const;
-  [[nodiscard]] KeyframeRecord makeRecord(Keyframe keyframe,
-                                          std::shared_ptr<const PlaneCloud> planes) const;
+  [[nodiscard]] KeyframeRecord makeRecord(Keyframe keyframe, const PlaneCloud& planes) const;
   void connect(const GraphEdge& edge);
-  void level(int node);
+  void level(int node, const PlaneCloud& planes);
 
   MapFrameOptions frame_;
   PoseGraph graph_;

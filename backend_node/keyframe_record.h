@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
+#include "planecloud_slam/backend_node/view_sketch.h"
 
 namespace planecloud {
 
 /// A keyframe of the map and how far its session had come.
 struct KeyframeRecord {
   std::shared_ptr<const MapKeyframe> keyframe;
+  ViewSketch sketch;  ///< of what it saw
   double path = 0.0;  ///< of its session up to it, by odometry, see motionLength [m]
 };
 

@@ -73,9 +73,9 @@ std::vector<LoopCandidate> LoopClosureDetector::near(const Query& query) const {
     const double distance = T_target_source.translation().norm();
     const double angle = std::acos(std::clamp(T_target_source.linear()(2, 2), -1.0, 1.0));
     if (distance > radius || angle > options_.max_view_angle) continue;
-    const double overlap =
-        mutualViewOverlap(*keyframe(query.records, target).planes,
-                          *keyframe(query.records, query.source).planes, T_target_source);
+    const double overlap = mutualViewOverlap(
+        query.records[static_cast<std::size_t>(target)].sketch,
+        query.records[static_cast<std::size_t>(query.source)].sketch, T_target_source);
     if (overlap < options_.min_view_overlap) continue;
     scored.emplace_back(1.0 - overlap, LoopCandidate{target, query.source, true, path, 0.0});
   }
@@ -90,7 +90,7 @@ std::vector<LoopCandidate> LoopClosureDetector::alike(const Query& query) const 
     const auto comparison = compareAppearance(keyframe(query.records, target).keyframe->descriptor,
                                               source.keyframe->descriptor);
     if (!comparison || comparison->dissimilarity > options_.max_dissimilarity) continue;
-    const CameraIntrinsics& camera = source.planes->camera;
+    const CameraIntrinsics& camera = source.planes.camera();
     const double turn = std::atan(comparison->shift_x * camera.width / camera.fx);
     scored.emplace_back(comparison->dissimilarity,
                         LoopCandidate{target, query.source, false, 0.0, turn});

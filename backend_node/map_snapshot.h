@@ -3,9 +3,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planecloud_slam/plane_fit/keyframe.h"
@@ -29,13 +31,34 @@ struct GraphEdge {
   bool inter_robot = false;
 };
 
+/// The planes of a keyframe. A map of ten thousand decoded ones would fill the memory, so they are
+/// kept as they travelled and decoded anew at each access: keep the result of `*` while you use it.
+class MapPlanes {
+ public:
+  MapPlanes() = default;
+  /// Of a keyframe that passed checkKeyframe.
+  explicit MapPlanes(std::shared_ptr<const Keyframe> keyframe) : keyframe_(std::move(keyframe)) {}
+  /// Planes that were never encoded.
+  explicit MapPlanes(std::shared_ptr<const PlaneCloud> decoded) : decoded_(std::move(decoded)) {}
+
+  [[nodiscard]] PlaneCloud operator*() const;
+  [[nodiscard]] const CameraIntrinsics& camera() const;
+  /// How many there are.
+  [[nodiscard]] std::size_t count() const;
+
+ private:
+  std::shared_ptr<const Keyframe> keyframe_;
+  std::shared_ptr<const PlaneCloud> decoded_;
+};
+
 /// A keyframe of the map. Shared between snapshots: only poses change from one to the next.
 struct MapKeyframe {
   KeyframeId id;
   double stamp = 0.0;
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
-  std::shared_ptr<const Keyframe> keyframe;  ///< as received (encoded planes, texture)
-  std::shared_ptr<const PlaneCloud> planes;  ///< decoded
+  /// As received (encoded planes, texture) but for its edges and hints, which went into the graph.
+  std::shared_ptr<const Keyframe> keyframe;
+  MapPlanes planes;
 };
 
 /// The map at one moment, immutable: publishers read it while the backend goes on.

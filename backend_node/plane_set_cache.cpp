@@ -10,7 +10,7 @@ PlaneSet PlaneSetCache::get(const KeyframeRecords& records, int node) {
     entries_.splice(entries_.begin(), entries_, found->second);
     return entries_.front().second;
   }
-  const PlaneCloud& planes = *records.at(static_cast<std::size_t>(node)).keyframe->planes;
+  const PlaneCloud planes = *records.at(static_cast<std::size_t>(node)).keyframe->planes;
   entries_.emplace_front(node, PlaneSet(planes, options_));
   by_node_[node] = entries_.begin();
   if (entries_.size() > capacity_) {

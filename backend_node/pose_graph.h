@@ -52,6 +52,15 @@ class PoseGraph {
   /// Squared Mahalanobis distance between an edge of the graph and the present poses.
   [[nodiscard]] double squaredError(const GraphEdge& edge) const;
 
+  /// Optimises the `local_window` nodes that fewest edges lie between them and `seeds`, all others
+  /// fixed; nothing is found false. Costs the same however large the graph is.
+  OptimisationSummary optimizeAround(const std::vector<int>& seeds);
+
+  /// Takes over what became of `copy`, a copy of this graph that was optimised while this one went
+  /// on: poses, closures found false. Nodes added since keep their place to the older node they
+  /// hang on. Returns the closures that left.
+  std::vector<GraphEdge> adopt(const PoseGraph& copy, const OptimisationSummary& summary);
+
   /// Optimises all components; a closure that then disagrees by more than `removal_distance`
   /// leaves, the worst first, each time followed by another optimisation.
   OptimisationSummary optimize();
@@ -70,8 +79,10 @@ class PoseGraph {
   };
 
   [[nodiscard]] const Node& at(int node) const { return nodes_.at(static_cast<std::size_t>(node)); }
-  [[nodiscard]] std::vector<std::vector<int>> adjacency() const;
+  void eraseEdge(std::size_t edge);
   void renumberComponents();
+  [[nodiscard]] std::vector<int> rootsOfComponents() const;
+  [[nodiscard]] std::vector<int> nodesAround(const std::vector<int>& seeds) const;
   void solve(OptimisationSummary& summary);
   [[nodiscard]] std::optional<std::size_t> worstClosure() const;
 
@@ -79,7 +90,8 @@ class PoseGraph {
   std::vector<Node> nodes_;
   std::map<KeyframeId, int> numbers_;
   std::vector<GraphEdge> edges_;
-  std::vector<Ends> ends_;  ///< of `edges_`, same order
+  std::vector<Ends> ends_;                  ///< of `edges_`, same order
+  std::vector<std::vector<int>> edges_of_;  ///< of each node, positions in `edges_`
   int components_ = 0;
 };
 

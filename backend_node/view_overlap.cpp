@@ -9,33 +9,26 @@ namespace {
 
 constexpr double kNearestDepth = 0.1;  ///< of a point in the other's view [m]
 
-double viewShare(const PlaneCloud& target, const PlaneCloud& source,
+double viewShare(const ViewSketch& target, const ViewSketch& source,
                  const Eigen::Isometry3d& T_target_source) {
-  const CameraIntrinsics& from = source.camera;
+  if (source.samples.empty()) return 0.0;
   const CameraIntrinsics& into = target.camera;
-  double total = 0.0;
-  double seen = 0.0;
-  for (const PlanarTile& tile : source.tiles) {
-    const double u = (tile.rect.x + 0.5 * tile.rect.width - from.cx) / from.fx;
-    const double v = (tile.rect.y + 0.5 * tile.rect.height - from.cy) / from.fy;
-    const double q = tile.inverse_depth.cast<double>().dot(Eigen::Vector3d(u, v, 1.0));
-    const double area = tile.rect.area();
-    total += area;
-    if (q <= 0.0) continue;
-    const Eigen::Vector3d point = T_target_source * Eigen::Vector3d(u / q, v / q, 1.0 / q);
+  int seen = 0;
+  for (const ViewSketch::Sample& sample : source.samples) {
+    const Eigen::Vector3d point = T_target_source * sample.point.cast<double>();
     if (point.z() < kNearestDepth) continue;
-    const Eigen::Vector3d normal = T_target_source.linear() * -tile.inverse_depth.cast<double>();
+    const Eigen::Vector3d normal = T_target_source.linear() * sample.normal.cast<double>();
     if (normal.dot(point) >= 0.0) continue;
     const double x = into.fx * point.x() / point.z() + into.cx;
     const double y = into.fy * point.y() / point.z() + into.cy;
-    if (x >= 0.0 && x < into.width && y >= 0.0 && y < into.height) seen += area;
+    if (x >= 0.0 && x < into.width && y >= 0.0 && y < into.height) ++seen;
   }
-  return total > 0.0 ? seen / total : 0.0;
+  return seen / static_cast<double>(source.samples.size());
 }
 
 }  // namespace
 
-double mutualViewOverlap(const PlaneCloud& target, const PlaneCloud& source,
+double mutualViewOverlap(const ViewSketch& target, const ViewSketch& source,
                          const Eigen::Isometry3d& T_target_source) {
   return std::min(viewShare(target, source, T_target_source),
                   viewShare(source, target, T_target_source.inverse()));

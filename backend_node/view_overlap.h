@@ -4,14 +4,14 @@
 
 #include <Eigen/Geometry>
 
-#include "planecloud_slam/plane_fit/plane_cloud.h"
+#include "planecloud_slam/backend_node/view_sketch.h"
 
 namespace planecloud {
 
-/// Share of `source`'s tiles, by pixels, whose centres fall into `target`'s image and face its
-/// camera, and the other way round: the smaller of both, [0, 1]. Ignores occlusion and lens
-/// distortion: a cheap prediction of whether two keyframes can be aligned.
-[[nodiscard]] double mutualViewOverlap(const PlaneCloud& target, const PlaneCloud& source,
+/// Share of `source`'s samples that fall into `target`'s image and face its camera, and the other
+/// way round: the smaller of both, [0, 1]. Ignores occlusion and lens distortion: a cheap
+/// prediction of whether two keyframes can be aligned.
+[[nodiscard]] double mutualViewOverlap(const ViewSketch& target, const ViewSketch& source,
                                        const Eigen::Isometry3d& T_target_source);
 
 }  // namespace planecloud

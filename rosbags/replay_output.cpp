@@ -55,7 +55,7 @@ PictureRobot makePictureRobot(const JudgedReplay& replay, std::size_t index) {
 std::string makeSubtitle(const JudgedReplay& replay) {
   std::size_t planes = 0;
   for (const MapSnapshot::Node& node : replay.result.map->nodes) {
-    planes += node.keyframe->planes->tiles.size();
+    planes += node.keyframe->planes.count();
   }
   double bytes = 0.0;
   double path = 0.0;

@@ -76,6 +76,7 @@ class ReplayRun {
     const KeyframeId id = keyframe.id;
     const Stopwatch stopwatch;
     const InsertionResult inserted = backend_.insert(std::move(keyframe));
+    if (backend_.optimisationDue()) backend_.optimize();
     const double elapsed = stopwatch.elapsed();
     if (inserted.optimised) {
       addOptimizeTime(elapsed);

@@ -67,10 +67,11 @@ std::vector<SurfaceSample> sampleSurfaces(const MapSnapshot& map, const SurfaceS
         std::find(sampling.robots.begin(), sampling.robots.end(), node.keyframe->id.robot);
     if (node.component != sampling.component || robot == sampling.robots.end()) continue;
     View view;
-    view.camera = node.keyframe->planes->camera;
+    view.camera = node.keyframe->planes.camera();
     view.T_view_camera = (sampling.T_view_map * node.T_map_camera).cast<float>();
     view.robot = static_cast<int>(robot - sampling.robots.begin());
-    for (const PlanarTile& tile : node.keyframe->planes->tiles) {
+    const PlaneCloud planes = *node.keyframe->planes;
+    for (const PlanarTile& tile : planes.tiles) {
       sampleTile(tile, view, sampling, samples);
     }
   }

@@ -60,7 +60,7 @@ inline void addKeyframe(MapSnapshot& map, const KeyframeId& id, double stamp,
   keyframe->id = id;
   keyframe->stamp = stamp;
   keyframe->T_odom_camera = T_map_camera;
-  keyframe->planes = std::make_shared<const PlaneCloud>(std::move(cloud));
+  keyframe->planes = MapPlanes(std::make_shared<const PlaneCloud>(std::move(cloud)));
   MapSnapshot::Node node;
   node.keyframe = keyframe;
   node.T_map_camera = T_map_camera;

@@ -88,7 +88,7 @@ TEST(AlignmentStarts, SpreadWithTheUncertainty) {
 
 TEST(MutualViewOverlap, IsOneForTheSameViewAndZeroBackToBack) {
   const Eigen::Isometry3d T_world_camera = lookAlongX({-2.0, 0.0, 0.8}, 0.0, 0.1);
-  const PlaneCloud view = makeRoom().view(T_world_camera, 0.0, 1);
+  const ViewSketch view = sketchView(makeRoom().view(T_world_camera, 0.0, 1));
   EXPECT_DOUBLE_EQ(mutualViewOverlap(view, view, Eigen::Isometry3d::Identity()), 1.0);
   const Eigen::Isometry3d turned(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));
   EXPECT_LT(mutualViewOverlap(view, view, turned), 0.05);

@@ -34,8 +34,8 @@ class LoopClosureDetectorTest : public testing::Test {
       keyframe.edges.push_back(edge);
     }
     last_[robot] = T_world_camera;
-    auto planes = std::make_shared<const PlaneCloud>(makeRoom().view(T_world_camera, 0.0, 1));
-    return map_.add(std::move(keyframe), std::move(planes));
+    const PlaneCloud planes = makeRoom().view(T_world_camera, 0.0, 1);
+    return map_.add(std::move(keyframe), planes);
   }
 
   std::vector<int> targets(int source, const LoopCandidateOptions& options = {}) {

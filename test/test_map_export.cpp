@@ -27,7 +27,7 @@ MapSnapshot::Node nodeOf(const std::string& robot, int number, const Eigen::Isom
   auto keyframe = std::make_shared<MapKeyframe>();
   keyframe->id = {robot, 1, static_cast<std::uint32_t>(number)};
   keyframe->stamp = 1.25 + number;
-  keyframe->planes = std::make_shared<const PlaneCloud>(makeRoom().view(T, 0.0, 1));
+  keyframe->planes = MapPlanes(std::make_shared<const PlaneCloud>(makeRoom().view(T, 0.0, 1)));
   keyframe->keyframe = std::make_shared<const Keyframe>();
   return {std::move(keyframe), T, 0};
 }
@@ -182,7 +182,7 @@ TEST(ExportMap, WritesAMeshThatReadsBackInTheRobotsColours) {
   EXPECT_EQ(paths[2], folder.path() + "/a_1_keyframes.txt");
   const Mesh mesh = readMesh(paths[0]);
   std::size_t tiles = 0;
-  for (const MapSnapshot::Node& node : map.nodes) tiles += node.keyframe->planes->tiles.size();
+  for (const MapSnapshot::Node& node : map.nodes) tiles += node.keyframe->planes.count();
   EXPECT_LE(mesh.faces, tiles);
   EXPECT_GT(mesh.faces, tiles * 9 / 10);
   ASSERT_EQ(mesh.positions.size(), 4 * mesh.faces);

@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "planecloud_slam/plane_fit/camera.h"
+#include "planecloud_slam/plane_fit/plane_cloud.h"
+
+namespace planecloud {
+
+/// What a keyframe saw along a coarse grid of rays: a kilobyte that stays in memory for every
+/// keyframe, enough to predict which keyframes see the same place.
+struct ViewSketch {
+  struct Sample {
+    Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< in the optical frame [m]
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< towards the camera, not of unit length
+  };
+  CameraIntrinsics camera;
+  std::vector<Sample> samples;  ///< of the rays that met a tile
+};
+
+/// Ignores lens distortion.
+[[nodiscard]] ViewSketch sketchView(const PlaneCloud& planes);
+
+}  // namespace planecloud
