@@ -135,9 +135,9 @@ void compareChunk(const ReferencePoints& points, std::size_t begin, std::size_t 
     const V deviation = hn::Abs(r_q);
     const auto agreeing =
         hn::And(valid, hn::Lt(deviation, hn::Mul(hn::Set(d, kAgreeing), predicted)));
-    const auto seen =
-        hn::And(valid, hn::Le(deviation, hn::Mul(hn::Set(d, kNotOccluded), predicted)));
     const V grey = interpolate(g0, g1, g2, g3, fx, fy);
+    const auto seen = hn::And(hn::And(valid, hn::Lt(grey, hn::Set(d, kSaturated))),
+                              hn::Le(deviation, hn::Mul(hn::Set(d, kNotOccluded), predicted)));
     const V r_grey = hn::MulSub(hn::Sub(grey, offset), inverse_gain,
                                 hn::LoadU(d, points.grey.data() + begin + k));
     hn::StoreU(hn::IfThenElseZero(seen, r_grey), d, out.grey.data() + begin + k);

@@ -5,14 +5,6 @@
 #include "planecloud_slam/frontend_node/alignment_kernel_scalar.h"
 
 namespace planecloud {
-namespace {
-
-Whitening makeWhitening(const ResidualScale& scale, double nu) {
-  return {static_cast<float>(1.0 / scale.sigma_grey), static_cast<float>(1.0 / scale.sigma_q),
-          static_cast<float>(scale.slope), static_cast<float>(nu)};
-}
-
-}  // namespace
 
 void computeResiduals(const ReferencePoints& points, const RgbdLevel& current,
                       const Eigen::Isometry3d& T_current_reference, const Brightness& brightness,

@@ -78,14 +78,6 @@ struct WarpF {
   float offset = 0.0F;  ///< [grey levels]
 };
 
-/// A scale as the loops use it.
-struct Whitening {
-  float inverse_grey;
-  float inverse_q;
-  float slope;
-  float nu;  ///< degrees of freedom of the t-distribution
-};
-
 /// The loops. Two implementations that agree up to rounding and the order of summation.
 struct AlignmentKernels {
   const char* name;
@@ -105,6 +97,8 @@ struct AlignmentKernels {
 /// Relative inverse depth deviations: see `Residuals`.
 constexpr float kAgreeing = 0.05F;
 constexpr float kNotOccluded = 0.2F;
+/// Grey levels from here on are clipped by an exposure: they say nothing.
+constexpr float kSaturated = 250.0F;
 /// Relative inverse depth spread of 2x2 pixels of one surface.
 constexpr float kCellSpread = 0.1F;
 /// The gain unknown multiplies `(I_reference - kMiddleGrey) * kInverseGreySpread`.

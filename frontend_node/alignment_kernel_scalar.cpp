@@ -52,6 +52,7 @@ void comparePoint(const ReferencePoints& points, const RgbdLevel& current, const
   if (deviation > kNotOccluded * predicted) return;
   const float grey =
       interpolate({upper[0].grey, upper[1].grey, lower[0].grey, lower[1].grey}, fx, fy);
+  if (!(grey < kSaturated)) return;
   out.grey[i] = (grey - warp.offset) * warp.inverse_gain - points.grey[i];
   out.q[i] = q - predicted;
   out.seen[i] = 1.0F;

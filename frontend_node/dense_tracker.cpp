@@ -3,26 +3,45 @@
 #include "planecloud_slam/frontend_node/dense_tracker.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace planecloud {
 namespace {
 
 constexpr std::size_t kMinPoints = 60;
+/// From so many starts on, that many are followed.
+constexpr std::size_t kManyStarts = 6;
 /// Steps that leave the residuals' scale larger than the best by more than this (log) are taken
 /// back when several in a row do not lead below it.
 constexpr double kMaxLogGrowth = 0.02;
 constexpr int kMaxWorseSteps = 4;
+/// On coarser levels far starts get worse, as more comes into view, before they get better.
+constexpr int kMaxWorseCoarseSteps = 12;
 /// Weak prior of a brightness step: 100 grey levels, a factor of two.
 constexpr double kOffsetInformation = 1e-4;
 constexpr double kGainInformation = 1.0 / (64.0 * 64.0);
+/// Passes that bring a scale from nothing, and from the coarser level, to its fixed point.
 constexpr int kFirstScalePasses = 10;
+constexpr int kLevelScalePasses = 3;
+constexpr int kMisfitPasses = 5;
+constexpr double kDepthNoise = 2e-3;  ///< of inverse depth [1/m], see DepthNoiseModel
 constexpr double kStartSigmaGrey = 20.0;
 constexpr double kStartSigmaQ = 0.05;
 constexpr double kMinGain = 0.1;
 constexpr double kMaxGain = 10.0;
+
+/// Starts that share less than this of the reference's points are not compared with others.
+constexpr double kComparableShare = 0.25;
+
+bool isComparable(const ReferencePoints& points, const Residuals& residuals) {
+  return residuals.seen_count >= kMinPoints &&
+         static_cast<double>(residuals.seen_count) >=
+             kComparableShare * static_cast<double>(points.count);
+}
 
 /// Applies `step` to brightness, see `kUnknowns`.
 Brightness updateBrightness(const Brightness& brightness, const StepVector& step) {
@@ -51,6 +70,7 @@ struct DenseTracker::State {
   ResidualScale scale{kStartSigmaGrey, kStartSigmaQ, 0.0};
   NormalEquations equations;  ///< of the last iteration, without prior
   int iterations = 0;
+  bool is_finest = false;  ///< of the levels
 };
 
 DenseTracker::DenseTracker(const DenseTrackerOptions& options)
@@ -60,11 +80,22 @@ DenseTracker::DenseTracker(const DenseTrackerOptions& options)
   options_.check();
 }
 
-DenseTracker::State DenseTracker::chooseStart(const ReferencePoints& points,
-                                              const RgbdLevel& current,
-                                              const AlignmentStart& start) {
-  State best;
-  double best_volume = std::numeric_limits<double>::infinity();
+/// How badly the last residuals fit: log of their scale, depth counted to its noise and not only to
+/// the floor that balances it with grey.
+double DenseTracker::misfit(const ReferencePoints& points, ResidualScale scale) const {
+  if (!isComparable(points, residuals_)) return std::numeric_limits<double>::max();
+  ScaleModel model = scale_model_;
+  model.min_sigma_q = std::min(model.min_sigma_q, kDepthNoise);
+  for (int pass = 0; pass < kMisfitPasses; ++pass) {
+    scale = reestimateScale(residuals_.view(), scale, model);
+  }
+  return scale.logVolume();
+}
+
+std::vector<DenseTracker::State> DenseTracker::rankStarts(const ReferencePoints& points,
+                                                          const RgbdLevel& current,
+                                                          const AlignmentStart& start) {
+  std::vector<std::pair<double, State>> ranked;
   for (const Eigen::Isometry3d& T_reference_current : start.T_reference_current) {
     State state;
     state.brightness = start.brightness;
@@ -74,10 +105,32 @@ DenseTracker::State DenseTracker::chooseStart(const ReferencePoints& points,
     for (int pass = 0; pass < kFirstScalePasses; ++pass) {
       state.scale = reestimateScale(residuals_.view(), state.scale, scale_model_);
     }
-    const bool comparable = residuals_.seen_count >= kMinPoints;
-    const double volume = comparable ? state.scale.logVolume() : std::numeric_limits<double>::max();
-    if (volume >= best_volume) continue;
-    best_volume = volume;
+    ranked.emplace_back(misfit(points, state.scale), state);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<State> states;
+  for (const auto& [volume, state] : ranked) states.push_back(state);
+  return states;
+}
+
+/// With many starts the best few are followed on the coarsest level, which costs little.
+DenseTracker::State DenseTracker::chooseStart(const ReferencePoints& points,
+                                              const RgbdLevel& current,
+                                              const AlignmentStart& start) {
+  std::vector<State> states = rankStarts(points, current, start);
+  if (states.size() < kManyStarts) return states.front();
+  states.resize(kManyStarts);
+  State best = states.front();
+  double best_misfit = std::numeric_limits<double>::infinity();
+  for (State& state : states) {
+    const AlignmentStatus status = alignLevel(points, current, state);
+    if (status == AlignmentStatus::kTooFewPoints || status == AlignmentStatus::kDegenerate) {
+      continue;
+    }
+    const double at_end = misfit(points, state.scale);
+    if (at_end >= best_misfit) continue;
+    best_misfit = at_end;
     best = state;
   }
   return best;
@@ -116,12 +169,12 @@ AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const Rg
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration, ++state.iterations) {
     computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
     if (residuals_.seen_count < kMinPoints) return AlignmentStatus::kTooFewPoints;
-    for (int pass = iteration == 0 ? kFirstScalePasses : 1; pass > 0; --pass) {
+    for (int pass = iteration == 0 ? kLevelScalePasses : 1; pass > 0; --pass) {
       state.scale = reestimateScale(residuals_.view(), state.scale, scale_model_);
     }
     const double volume = state.scale.logVolume();
     worse_steps = volume > best_volume + kMaxLogGrowth ? worse_steps + 1 : 0;
-    if (worse_steps == kMaxWorseSteps) {
+    if (worse_steps == (state.is_finest ? kMaxWorseSteps : kMaxWorseCoarseSteps)) {
       const int iterations = state.iterations;
       state = best;
       state.iterations = iterations;
@@ -194,6 +247,7 @@ Alignment DenseTracker::align(const TrackingReference& reference, const RgbdPyra
   State state = chooseStart(points.back(), current.levels().back(), start);
   Alignment alignment;
   for (std::size_t level = points.size(); level-- > 0;) {
+    state.is_finest = level == 0;
     alignment.status = alignLevel(points[level], current.levels()[level], state);
   }
   alignment.T_reference_current = state.T_current_reference.inverse();

@@ -16,7 +16,8 @@ namespace planecloud {
 /// Where an alignment may start.
 struct AlignmentStart {
   /// Candidates for T_reference_current, at least one: the search starts at the one that fits best
-  /// on the coarsest level. The first is where the motion prior, if any, pulls to.
+  /// on the coarsest level; of six or more, the best six are followed there. The first is where
+  /// the motion prior, if any, pulls to.
   std::vector<Eigen::Isometry3d> T_reference_current;
   Brightness brightness;
 };
@@ -59,6 +60,10 @@ class DenseTracker {
 
  private:
   struct State;
+  [[nodiscard]] double misfit(const ReferencePoints& points, ResidualScale scale) const;
+  [[nodiscard]] std::vector<State> rankStarts(const ReferencePoints& points,
+                                              const RgbdLevel& current,
+                                              const AlignmentStart& start);
   [[nodiscard]] State chooseStart(const ReferencePoints& points, const RgbdLevel& current,
                                   const AlignmentStart& start);
   [[nodiscard]] AlignmentStatus alignLevel(const ReferencePoints& points, const RgbdLevel& current,

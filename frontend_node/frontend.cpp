@@ -52,7 +52,8 @@ class Frontend::Impl {
     if (raw.stamp < last_stamp_) session_.endSegment();
     last_stamp_ = raw.stamp;
     if (!rectifier_) return session_.track(raw, T_previous_current);
-    return session_.track(rectifier_->rectify(raw), T_previous_current);
+    rectifier_->rectify(raw, rectified_);
+    return session_.track(rectified_, T_previous_current);
   }
 
   std::unique_ptr<Impl> continueWith(const CameraIntrinsics& camera) {
@@ -84,6 +85,7 @@ class Frontend::Impl {
   FrontendOptions options_;
   const CameraIntrinsics camera_;  ///< without distortion
   std::optional<Rectifier> rectifier_;
+  RgbdFrame rectified_;  ///< keeps its memory
   TrackingSession session_;
   std::vector<CompletedKeyframe> completed_;  ///< in an earlier camera
   double last_stamp_ = 0.0;

@@ -46,6 +46,9 @@ struct FrameResult {
   KeyframeId reference;
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< of T_reference_camera
+  double overlap = 0.0;                     ///< share of the reference's points seen, [0, 1]
+  double inliers = 0.0;                     ///< share of these whose depth agrees to 5 %, [0, 1]
+  double grey_residual = 0.0;               ///< scale of the grey residuals [grey levels]
 };
 
 /// A keyframe whose tracking is over and whose depth waits to be fitted. Movable between threads.

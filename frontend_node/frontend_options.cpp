@@ -72,6 +72,7 @@ void LossOptions::check() const {
   checkRange("lost/min_inliers", min_inliers, 0.0, 1.0);
   checkRange("lost/max_depth_residual", max_depth_residual, 1e-6, 10.0);
   checkRange("lost/max_intensity_residual", max_intensity_residual, 1e-3, 255.0);
+  checkRange("lost/max_residual_growth", max_residual_growth, 1.0, 100.0);
   checkRange("lost/min_entropy_ratio", min_entropy_ratio, 0.0, 1.0);
   checkRange("lost/max_speed", max_speed, 0.1, 100.0);
   checkRange("lost/max_turn_rate", max_turn_rate, 0.1, 100.0);
@@ -79,6 +80,7 @@ void LossOptions::check() const {
   checkRange("lost/max_turn_deviation", max_turn_deviation, 1e-3, 3.0);
   checkRange("lost/max_guess_error", max_guess_error, 0.0, 10.0);
   checkRange("lost/max_guess_turn_error", max_guess_turn_error, 0.0, 3.0);
+  checkRange("lost/max_gap", max_gap, 0.01, 100.0);
   checkRange("lost/new_segment_after", new_segment_after, 0.0, 3600.0);
 }
 

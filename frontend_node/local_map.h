@@ -3,8 +3,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
+#include <vector>
 
+#include "planecloud_slam/frontend_node/depth_fusion.h"
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/option_fields.h"
@@ -41,9 +42,6 @@ class LocalMap {
   /// Throws std::invalid_argument when `options` or `camera` fail their check, or when the camera
   /// has distortion.
   LocalMap(const LocalMapOptions& options, const CameraIntrinsics& camera);
-  ~LocalMap();
-  LocalMap(LocalMap&&) noexcept;
-  LocalMap& operator=(LocalMap&&) noexcept;
 
   /// Opens a keyframe with `depth` [m, NaN or <= 0: none] of the camera's size.
   void open(ImageView<float> depth);
@@ -55,16 +53,19 @@ class LocalMap {
   [[nodiscard]] Image<float> depth() const;
 
  private:
-  struct RowWarp;
+  [[nodiscard]] FusionWarp warp(const Eigen::Isometry3d& T) const;
+  [[nodiscard]] FusionRow row(int y) const;
   void fillHoles(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_camera);
   void improvePixels(ImageView<float> depth, const Eigen::Isometry3d& T_camera_keyframe);
 
   LocalMapOptions options_;
   CameraIntrinsics camera_;
-  Image<float> inverse_depth_;  ///< mean [1/m], 0: none
-  Image<float> observations_;   ///< frames in the mean
-  int frames_ = 0;              ///< offered to this keyframe
-  std::unique_ptr<RowWarp> warp_;
+  Image<float> inverse_depth_;   ///< mean [1/m], 0: none
+  Image<float> observations_;    ///< frames in the mean
+  int frames_ = 0;               ///< offered to this keyframe
+  std::vector<float> tangents_;  ///< of the columns
+  std::vector<int> pixels_;      ///< of one row: where it is seen
+  std::vector<float> seen_;      ///< of one row: its inverse depth there [1/m]
 };
 
 }  // namespace planecloud

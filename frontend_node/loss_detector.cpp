@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iomanip>
@@ -18,6 +19,13 @@ constexpr int kSampleStep = 4;
 /// Allowed on top of speed times time: stamps jitter.
 constexpr double kMotionSlack = 0.05;  // [m] and [rad]
 
+/// Residuals of good frames are at least this: noise, interpolation [grey levels].
+constexpr double kLeastNormalGrey = 3.0;
+/// Of a frame in what is normal: the last second counts.
+constexpr double kLearningShare = 0.05;
+/// After a loss nothing vouches for an alignment but itself.
+constexpr double kDoubtlessOverlap = 0.2;
+constexpr double kInlierSlack = 0.1;
 /// Share of a motion that wheels may be wrong by when they slip.
 constexpr double kWheelShare = 0.2;
 
@@ -95,10 +103,14 @@ std::string LossDetector::findWeakness(const Alignment& alignment) const {
     return compare("the inverse depth residuals [1/m] are", alignment.scale.sigma_q, ">",
                    options_.max_depth_residual);
   }
-  if (alignment.scale.sigma_grey > options_.max_intensity_residual) {
-    return compare("the grey residuals are", alignment.scale.sigma_grey, ">",
-                   options_.max_intensity_residual);
+  const double grey_limit = greyLimit(options_.max_residual_growth);
+  if (alignment.scale.sigma_grey > grey_limit) {
+    return compare("the grey residuals are", alignment.scale.sigma_grey, ">", grey_limit);
   }
+  return findUncertainty(alignment);
+}
+
+std::string LossDetector::findUncertainty(const Alignment& alignment) const {
   const double deviation = largestDeviation(alignment.information, 0);
   if (!(deviation <= options_.max_deviation)) {
     return compare("the position's standard deviation [m] is", deviation, ">",
@@ -110,6 +122,34 @@ std::string LossDetector::findWeakness(const Alignment& alignment) const {
                    options_.max_turn_deviation);
   }
   return "";
+}
+
+double LossDetector::greyLimit(double growth) const {
+  if (normal_grey_ == 0.0) return options_.max_intensity_residual;
+  return std::min(options_.max_intensity_residual,
+                  growth * std::max(normal_grey_, kLeastNormalGrey));
+}
+
+void LossDetector::learn(const Alignment& alignment) {
+  const double share = normal_grey_ == 0.0 ? 1.0 : kLearningShare;
+  normal_grey_ += share * (alignment.scale.sigma_grey - normal_grey_);
+  normal_inliers_ += share * (alignment.inliers - normal_inliers_);
+}
+
+std::string LossDetector::findDoubt(const Alignment& alignment) const {
+  if (alignment.status != AlignmentStatus::kConverged) return "the alignment did not converge";
+  if (alignment.overlap < kDoubtlessOverlap) {
+    return compare("the keyframe's share in view is", alignment.overlap, "<", kDoubtlessOverlap);
+  }
+  const double inliers = std::max(options_.min_inliers, normal_inliers_ - kInlierSlack);
+  if (alignment.inliers < inliers) {
+    return compare("the share of agreeing depths is", alignment.inliers, "<", inliers);
+  }
+  const double grey_limit = greyLimit(options_.max_residual_growth);
+  if (alignment.scale.sigma_grey > grey_limit) {
+    return compare("the grey residuals are", alignment.scale.sigma_grey, ">", grey_limit);
+  }
+  return findUncertainty(alignment);
 }
 
 std::string LossDetector::findImplausibleMotion(const TrackedMotion& motion) const {

@@ -21,7 +21,8 @@ struct TrackedMotion {
   std::optional<Eigen::Isometry3d> T_previous_current_wheels;
 };
 
-/// Says why a frame or its alignment cannot be trusted.
+/// Says why a frame or its alignment cannot be trusted. Learns from the frames that can be what
+/// their residuals normally are: exposure, texture and noise decide that, not a fixed limit.
 class LossDetector {
  public:
   /// Throws std::invalid_argument when `options` fail their check.
@@ -34,11 +35,23 @@ class LossDetector {
   [[nodiscard]] std::string findAlignmentFault(const Alignment& alignment,
                                                const TrackedMotion& motion) const;
 
+  /// Why the alignment is not enough to go on with after a loss, when nothing else is known of the
+  /// motion; empty when it is.
+  [[nodiscard]] std::string findDoubt(const Alignment& alignment) const;
+
+  /// A good frame was aligned so.
+  void learn(const Alignment& alignment);
+
  private:
+  /// Largest scale of the grey residuals to believe, `growth` times the normal one.
+  [[nodiscard]] double greyLimit(double growth) const;
   [[nodiscard]] std::string findWeakness(const Alignment& alignment) const;
+  [[nodiscard]] std::string findUncertainty(const Alignment& alignment) const;
   [[nodiscard]] std::string findImplausibleMotion(const TrackedMotion& motion) const;
 
   LossOptions options_;
+  double normal_grey_ = 0.0;     ///< scale of the grey residuals of good frames; 0: not known
+  double normal_inliers_ = 0.0;  ///< share of good frames
 };
 
 }  // namespace planecloud

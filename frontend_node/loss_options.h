@@ -14,9 +14,12 @@ struct LossOptions {
   double min_inliers = 0.5;              ///< share of seen points that agree with the pose, [0, 1]
   double max_depth_residual = 0.1;       ///< scale of inverse depth residuals [1/m], (0, 10]
   double max_intensity_residual = 30.0;  ///< scale of grey residuals, (0, 255]
-  double min_entropy_ratio = 0.6;        ///< of `KeyframeSelector`, below it nothing holds, [0, 1]
-  double max_speed = 3.0;                ///< [m/s], [0.1, 100]
-  double max_turn_rate = 4.0;            ///< [rad/s], [0.1, 100]
+  /// Grey residuals this many times those of the last good frames, are those of another place or of
+  /// something that moves, [1, 100].
+  double max_residual_growth = 3.0;
+  double min_entropy_ratio = 0.6;  ///< of `KeyframeSelector`, below it nothing holds, [0, 1]
+  double max_speed = 3.0;          ///< [m/s], [0.1, 100]
+  double max_turn_rate = 4.0;      ///< [rad/s], [0.1, 100]
   /// Standard deviation of the pose in its least certain direction [m], [1e-3, 10].
   double max_deviation = 0.05;
   double max_turn_deviation = 0.05;  ///< the same for rotation [rad], [1e-3, 3]
@@ -24,8 +27,11 @@ struct LossOptions {
   /// [0, 10].
   double max_guess_error = 0.1;
   double max_guess_turn_error = 0.1;  ///< the same for rotation [rad], [0, 3]
+  /// Longest time between two frames across which motion is simply followed [s], [0.01, 100]. After
+  /// a longer one, as after a loss, an alignment must hold in both directions.
+  double max_gap = 0.3;
   /// Time without a track on images good enough for one before a new segment opens [s], [0, 3600].
-  double new_segment_after = 1.0;
+  double new_segment_after = 2.0;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -35,6 +41,7 @@ struct LossOptions {
     visit("min_inliers", self.min_inliers);
     visit("max_depth_residual", self.max_depth_residual);
     visit("max_intensity_residual", self.max_intensity_residual);
+    visit("max_residual_growth", self.max_residual_growth);
     visit("min_entropy_ratio", self.min_entropy_ratio);
     visit("max_speed", self.max_speed);
     visit("max_turn_rate", self.max_turn_rate);
@@ -42,6 +49,7 @@ struct LossOptions {
     visit("max_turn_deviation", self.max_turn_deviation);
     visit("max_guess_error", self.max_guess_error);
     visit("max_guess_turn_error", self.max_guess_turn_error);
+    visit("max_gap", self.max_gap);
     visit("new_segment_after", self.new_segment_after);
   }
 

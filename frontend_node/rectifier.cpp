@@ -2,17 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/frontend_node/rectifier.h"
 
+#include <cstdint>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace planecloud {
 
-/// Fixed-point maps of cv::remap: where each rectified pixel comes from.
+/// Where each rectified pixel comes from.
 struct Rectifier::Maps {
-  cv::Mat pixel;     ///< CV_16SC2
-  cv::Mat fraction;  ///< CV_16UC1
-  cv::Mat nearest;   ///< CV_16SC2, rounded
+  cv::Mat pixel;                      ///< CV_16SC2, fixed-point map of cv::remap
+  cv::Mat fraction;                   ///< CV_16UC1, of the same
+  std::vector<std::int32_t> nearest;  ///< index of the nearest pixel, -1: outside
 };
 
 Rectifier::Rectifier(const CameraIntrinsics& camera)
@@ -30,8 +32,14 @@ Rectifier::Rectifier(const CameraIntrinsics& camera)
     }
   }
   cv::convertMaps(map_x, map_y, maps_->pixel, maps_->fraction, CV_16SC2, false);
-  cv::Mat unused;
-  cv::convertMaps(map_x, map_y, maps_->nearest, unused, CV_16SC2, true);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const int column = cvRound(map_x.at<float>(y, x));
+      const int row = cvRound(map_y.at<float>(y, x));
+      const bool inside = column >= 0 && column < camera.width && row >= 0 && row < camera.height;
+      maps_->nearest.push_back(inside ? row * camera.width + column : -1);
+    }
+  }
 }
 
 Rectifier::~Rectifier() = default;
@@ -39,28 +47,33 @@ Rectifier::Rectifier(Rectifier&&) noexcept = default;
 Rectifier& Rectifier::operator=(Rectifier&&) noexcept = default;
 
 RgbdFrame Rectifier::rectify(const RgbdFrame& frame) const {
+  RgbdFrame rectified;
+  rectify(frame, rectified);
+  return rectified;
+}
+
+void Rectifier::rectify(const RgbdFrame& frame, RgbdFrame& rectified) const {
   const int width = rectified_.width;
   const int height = rectified_.height;
-  RgbdFrame rectified;
   rectified.stamp = frame.stamp;
-  rectified.grey = Image<std::uint8_t>(width, height);
-  rectified.depth = Image<float>(width, height);
+  rectified.grey.resize(width, height);
+  rectified.depth.resize(width, height);
   // cv::Mat has no read-only form; remap does not write to its source.
   const cv::Mat grey(height, width, CV_8UC1, const_cast<std::uint8_t*>(frame.grey.begin()));
-  const cv::Mat depth(height, width, CV_32FC1, const_cast<float*>(frame.depth.begin()));
   cv::Mat grey_out(height, width, CV_8UC1, rectified.grey.begin());
-  cv::Mat depth_out(height, width, CV_32FC1, rectified.depth.begin());
   cv::remap(grey, grey_out, maps_->pixel, maps_->fraction, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  cv::remap(depth, depth_out, maps_->nearest, cv::Mat(), cv::INTER_NEAREST, cv::BORDER_CONSTANT,
-            cv::Scalar(std::numeric_limits<double>::quiet_NaN()));
+  const float* depth = frame.depth.begin();
+  float* depth_out = rectified.depth.begin();
+  for (const std::int32_t from : maps_->nearest) {
+    *depth_out++ = from < 0 ? std::numeric_limits<float>::quiet_NaN() : depth[from];
+  }
+  rectified.color.resize(frame.color.width(), frame.color.height());
   if (!frame.color.empty()) {
-    rectified.color = Image<Rgb8>(width, height);
     const cv::Mat color(height, width, CV_8UC3, const_cast<Rgb8*>(frame.color.begin()));
     cv::Mat color_out(height, width, CV_8UC3, rectified.color.begin());
     cv::remap(color, color_out, maps_->pixel, maps_->fraction, cv::INTER_LINEAR,
               cv::BORDER_REPLICATE);
   }
-  return rectified;
 }
 
 }  // namespace planecloud

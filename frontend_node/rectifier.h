@@ -24,6 +24,8 @@ class Rectifier {
 
   /// Where the original image does not reach, depth is NaN. The frame must have the camera's size.
   [[nodiscard]] RgbdFrame rectify(const RgbdFrame& frame) const;
+  /// The same into `rectified`, whose memory is kept.
+  void rectify(const RgbdFrame& frame, RgbdFrame& rectified) const;
 
  private:
   struct Maps;

@@ -13,9 +13,15 @@ namespace {
 /// What alignments in both directions may differ by: more, and one of them is elsewhere.
 constexpr double kMaxDisagreement = 0.03;      // [m]
 constexpr double kMaxTurnDisagreement = 0.02;  // [rad]
-constexpr double kMinInliers = 0.8;
-/// Grey residuals of the same surface under the same light [grey levels].
-constexpr double kMaxGreyScale = 15.0;
+
+/// Views that look alike may be nearer or farther.
+std::vector<Eigen::Isometry3d> startsAround(const Eigen::Isometry3d& turn) {
+  std::vector<Eigen::Isometry3d> starts = {turn, Eigen::Isometry3d::Identity()};
+  for (const double forwards : {0.4, 0.8, -0.4, -0.8}) {
+    starts.push_back(turn * Eigen::Translation3d(0.0, 0.0, forwards));
+  }
+  return starts;
+}
 
 }  // namespace
 
@@ -24,56 +30,55 @@ Relocaliser::Relocaliser(const HistoryOptions& options, const DenseTrackerOption
   options_.check();
 }
 
-bool Relocaliser::isDoubtless(const Alignment& alignment) const {
-  return alignment.status == AlignmentStatus::kConverged &&
-         alignment.overlap >= options_.min_overlap && alignment.inliers >= kMinInliers &&
-         alignment.scale.sigma_grey <= kMaxGreyScale;
-}
-
-std::optional<Relocalisation> Relocaliser::alignWith(const KeyframeViewPtr& view,
-                                                     const TrackingReference& live_reference,
-                                                     const RgbdPyramid& live,
-                                                     const std::vector<Eigen::Isometry3d>& starts) {
-  const Alignment to_view = tracker_.align(live_reference, view->pyramid, {starts, {}});
-  if (!isDoubtless(to_view)) return std::nullopt;
-  auto reference = std::make_shared<const TrackingReference>(view->pyramid, tracking_);
-  const Alignment from_view =
-      tracker_.align(*reference, live, {{to_view.T_reference_current.inverse()}, {}});
-  if (!isDoubtless(from_view)) return std::nullopt;
-  const Eigen::Isometry3d loop = to_view.T_reference_current * from_view.T_reference_current;
+std::optional<Relocalisation> Relocaliser::alignWith(const ExpectedPlace& place, const Live& live) {
+  auto reference = place.reference;
+  if (!reference) {
+    reference = std::make_shared<const TrackingReference>(place.view->pyramid, tracking_);
+  }
+  const Alignment from_view = tracker_.align(*reference, live.pyramid, {place.T_view_live, {}});
+  if (!live.is_doubtless(from_view)) return std::nullopt;
+  const Alignment to_view =
+      tracker_.align(live.reference, place.view->pyramid,
+                     {{from_view.T_reference_current.inverse()}, Brightness{}});
+  if (!live.is_doubtless(to_view)) return std::nullopt;
+  const Eigen::Isometry3d loop = from_view.T_reference_current * to_view.T_reference_current;
   if (loop.translation().norm() > kMaxDisagreement || rotationAngle(loop) > kMaxTurnDisagreement) {
     return std::nullopt;
   }
-  return Relocalisation{view, std::move(reference), from_view};
+  return Relocalisation{place.view, std::move(reference), from_view};
+}
+
+std::vector<ExpectedPlace> Relocaliser::findAlike(const RgbdPyramid& live,
+                                                  const std::deque<KeyframeViewPtr>& views) const {
+  const std::vector<std::uint8_t> descriptor = describeView(live);
+  std::vector<std::pair<double, ExpectedPlace>> alike;
+  for (const KeyframeViewPtr& view : views) {
+    const auto comparison = compareAppearance(view->descriptor, descriptor);
+    if (!comparison || comparison->dissimilarity > options_.max_dissimilarity) continue;
+    const Eigen::Isometry3d turn =
+        turnByShift(live.levels().front().camera, comparison->shift_x, comparison->shift_y);
+    alike.push_back({comparison->dissimilarity, {view, nullptr, startsAround(turn)}});
+  }
+  std::stable_sort(alike.begin(), alike.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<ExpectedPlace> places;
+  for (auto& [dissimilarity, place] : alike) {
+    if (places.size() == static_cast<std::size_t>(options_.candidates)) break;
+    places.push_back(std::move(place));
+  }
+  return places;
 }
 
 std::optional<Relocalisation> Relocaliser::find(const RgbdPyramid& live,
-                                                const std::deque<KeyframeViewPtr>& views) {
-  struct Alike {
-    double dissimilarity;
-    KeyframeViewPtr view;
-    Eigen::Isometry3d T_live_view;
-  };
-  const std::vector<std::uint8_t> descriptor = describeView(live);
-  std::vector<Alike> alike;
-  for (const KeyframeViewPtr& view : views) {
-    const auto comparison = compareAppearance(descriptor, view->descriptor);
-    if (!comparison || comparison->dissimilarity > options_.max_dissimilarity) continue;
-    alike.push_back(
-        {comparison->dissimilarity, view,
-         turnByShift(live.levels().front().camera, comparison->shift_x, comparison->shift_y)});
+                                                const std::vector<ExpectedPlace>& places,
+                                                const std::deque<KeyframeViewPtr>& views,
+                                                const Judge& is_doubtless) {
+  const Live image{live, TrackingReference(live, tracking_), is_doubtless};
+  for (const ExpectedPlace& place : places) {
+    if (std::optional<Relocalisation> found = alignWith(place, image)) return found;
   }
-  if (alike.empty()) return std::nullopt;
-  std::stable_sort(alike.begin(), alike.end(), [](const Alike& a, const Alike& b) {
-    return a.dissimilarity < b.dissimilarity;
-  });
-  alike.resize(std::min(alike.size(), static_cast<std::size_t>(options_.candidates)));
-  const TrackingReference live_reference(live, tracking_);
-  for (const Alike& candidate : alike) {
-    std::optional<Relocalisation> found =
-        alignWith(candidate.view, live_reference, live,
-                  {candidate.T_live_view, Eigen::Isometry3d::Identity()});
-    if (found) return found;
+  for (const ExpectedPlace& place : findAlike(live, views)) {
+    if (std::optional<Relocalisation> found = alignWith(place, image)) return found;
   }
   return std::nullopt;
 }

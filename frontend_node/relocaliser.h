@@ -3,7 +3,9 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <optional>
+#include <vector>
 
 #include "planecloud_slam/frontend_node/dense_tracker.h"
 #include "planecloud_slam/frontend_node/history_options.h"
@@ -18,6 +20,13 @@ struct Relocalisation {
   Alignment alignment;                                 ///< T_view_live
 };
 
+/// Where a camera may be after a gap.
+struct ExpectedPlace {
+  KeyframeViewPtr view;
+  std::shared_ptr<const TrackingReference> reference;  ///< of `view`; none: it is made
+  std::vector<Eigen::Isometry3d> T_view_live;          ///< candidates, at least one
+};
+
 /// Recognises earlier keyframes in the images of a lost camera: those that look alike are aligned
 /// in both directions, and what is accepted must agree. One per thread.
 class Relocaliser {
@@ -25,16 +34,26 @@ class Relocaliser {
   /// Throws std::invalid_argument when options fail their check.
   Relocaliser(const HistoryOptions& options, const DenseTrackerOptions& tracking);
 
-  /// The first keyframe of `views` that the live image can be aligned with, those most alike
-  /// first; none when there is no doubtless one.
+  /// True when an alignment leaves no doubt.
+  using Judge = std::function<bool(const Alignment&)>;
+
+  /// The first of `places` that the live image can be aligned with beyond doubt; else the first
+  /// such of `views`, those most alike first; else none.
   [[nodiscard]] std::optional<Relocalisation> find(const RgbdPyramid& live,
-                                                   const std::deque<KeyframeViewPtr>& views);
+                                                   const std::vector<ExpectedPlace>& places,
+                                                   const std::deque<KeyframeViewPtr>& views,
+                                                   const Judge& is_doubtless);
 
  private:
-  [[nodiscard]] std::optional<Relocalisation> alignWith(
-      const KeyframeViewPtr& view, const TrackingReference& live_reference, const RgbdPyramid& live,
-      const std::vector<Eigen::Isometry3d>& starts);
-  [[nodiscard]] bool isDoubtless(const Alignment& alignment) const;
+  struct Live {
+    const RgbdPyramid& pyramid;
+    TrackingReference reference;
+    const Judge& is_doubtless;
+  };
+  [[nodiscard]] std::optional<Relocalisation> alignWith(const ExpectedPlace& place,
+                                                        const Live& live);
+  [[nodiscard]] std::vector<ExpectedPlace> findAlike(
+      const RgbdPyramid& live, const std::deque<KeyframeViewPtr>& views) const;
 
   HistoryOptions options_;
   DenseTrackerOptions tracking_;

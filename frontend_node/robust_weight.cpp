@@ -2,46 +2,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/frontend_node/robust_weight.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
-#include "planecloud_slam/frontend_node/tracking_reference.h"
-
 namespace planecloud {
-namespace {
-
-using Lanes = Eigen::Array<float, ReferencePoints::kLanes, 1>;
-using LanesMap = Eigen::Map<const Lanes>;
-
-}  // namespace
 
 double ResidualScale::logVolume() const { return std::log(sigma_grey) + std::log(sigma_q); }
 
+Whitening makeWhitening(const ResidualScale& scale, double nu) {
+  return {static_cast<float>(1.0 / scale.sigma_grey), static_cast<float>(1.0 / scale.sigma_q),
+          static_cast<float>(scale.slope), static_cast<float>(nu)};
+}
+
+ScatterSums sumScatterScalar(const ResidualView& residuals, const Whitening& whitening) {
+  ScatterSums sums;
+  for (std::size_t i = 0; i < residuals.count; ++i) {
+    const float grey = residuals.grey[i];
+    const float q = residuals.q[i];
+    const float e1 = (grey - whitening.slope * q) * whitening.inverse_grey;
+    const float e2 = q * whitening.inverse_q;
+    const double weight =
+        residuals.seen[i] * (whitening.nu + 2.0F) / (whitening.nu + e1 * e1 + e2 * e2);
+    sums.seen += residuals.seen[i];
+    sums.grey_grey += weight * grey * grey;
+    sums.grey_q += weight * grey * q;
+    sums.q_q += weight * q * q;
+  }
+  return sums;
+}
+
+#ifndef PLANECLOUD_SLAM_HAVE_HIGHWAY
+ScatterSums sumScatterVector(const ResidualView& residuals, const Whitening& whitening) {
+  return sumScatterScalar(residuals, whitening);
+}
+#endif
+
 ResidualScale reestimateScale(const ResidualView& residuals, const ResidualScale& previous,
                               const ScaleModel& model) {
-  const auto inverse_grey = static_cast<float>(1.0 / previous.sigma_grey);
-  const auto inverse_q = static_cast<float>(1.0 / previous.sigma_q);
-  const auto slope = static_cast<float>(previous.slope);
-  const auto nu_f = static_cast<float>(model.degrees_of_freedom);
-  Lanes seen = Lanes::Zero(), gg = Lanes::Zero(), gq = Lanes::Zero(), qq = Lanes::Zero();
-  for (std::size_t i = 0; i < residuals.count; i += ReferencePoints::kLanes) {
-    const Lanes grey = LanesMap(residuals.grey + i);
-    const Lanes q = LanesMap(residuals.q + i);
-    const Lanes mask = LanesMap(residuals.seen + i);
-    const Lanes e1 = (grey - slope * q) * inverse_grey;
-    const Lanes e2 = q * inverse_q;
-    const Lanes weight = mask * (nu_f + 2.0F) / (nu_f + e1 * e1 + e2 * e2);
-    seen += mask;
-    gg += weight * grey * grey;
-    gq += weight * grey * q;
-    qq += weight * q * q;
-  }
-  const double n = std::max(1.0, seen.cast<double>().sum());
-  const double var_q = std::max(qq.cast<double>().sum() / n, model.min_sigma_q * model.min_sigma_q);
+  const ScatterSums sums =
+      sumScatterVector(residuals, makeWhitening(previous, model.degrees_of_freedom));
+  const double n = std::max(1.0, sums.seen);
+  const double var_q = std::max(sums.q_q / n, model.min_sigma_q * model.min_sigma_q);
   ResidualScale scale;
-  scale.slope = gq.cast<double>().sum() / n / var_q;
-  const double var_grey = gg.cast<double>().sum() / n - scale.slope * scale.slope * var_q;
+  scale.slope = sums.grey_q / n / var_q;
+  const double var_grey = sums.grey_grey / n - scale.slope * scale.slope * var_q;
   scale.sigma_q = std::sqrt(var_q);
   scale.sigma_grey = std::sqrt(std::max(var_grey, model.min_sigma_grey * model.min_sigma_grey));
   return scale;

@@ -33,6 +33,30 @@ struct ScaleModel {
   double min_sigma_q = 0.03;        ///< [1/m]
 };
 
+/// `sum w r r^T` over the residuals seen, and their number.
+struct ScatterSums {
+  double seen = 0.0;
+  double grey_grey = 0.0;
+  double grey_q = 0.0;
+  double q_q = 0.0;
+};
+
+/// A scale as the loops use it.
+struct Whitening {
+  float inverse_grey;
+  float inverse_q;
+  float slope;
+  float nu;  ///< degrees of freedom of the t-distribution
+};
+[[nodiscard]] Whitening makeWhitening(const ResidualScale& scale, double nu);
+
+/// With t weights `w = (nu + 2) / (nu + r^T Sigma^-1 r)`; two implementations that agree to
+/// rounding.
+[[nodiscard]] ScatterSums sumScatterScalar(const ResidualView& residuals,
+                                           const Whitening& whitening);
+[[nodiscard]] ScatterSums sumScatterVector(const ResidualView& residuals,
+                                           const Whitening& whitening);
+
 /// One step of the maximum-likelihood scale of a bivariate t-distribution: `Sigma = mean(w r r^T)`,
 /// `w = (nu + 2) / (nu + r^T Sigma^-1 r)` with the Sigma of `previous` in the weights (Kerl 2013b
 /// sec. III-C; 2 is the residuals' dimension, where the paper prints 1: that is the weight of a

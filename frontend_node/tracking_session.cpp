@@ -11,6 +11,9 @@ namespace {
 /// Frames farther apart than this do not count as time on usable images [s].
 constexpr double kLongestFrameGap = 0.2;
 
+/// A motion goes on as it was for no longer than this [s].
+constexpr double kLongestExtrapolation = 3.0;
+
 /// A level camera looking along x of the odometry frame (x forward, y left, z up).
 Eigen::Isometry3d levelledCamera() {
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
@@ -77,6 +80,9 @@ FrameResult TrackingSession::process(const RgbdFrame& frame) {
   }
   pyramid_.assign(frame.grey.view(), frame.depth.view());
   if (!isTracking()) return openSegment(frame);
+  if (frame.stamp - last_good_stamp_ > options_.lost.max_gap) {
+    return recover(frame, "the keyframe is not recognised after a gap");
+  }
   const Alignment alignment = tracker_.align(
       *reference_.points, pyramid_, {{T_reference_predicted_, T_reference_last_}, brightness_});
   const bool leaving =
@@ -102,11 +108,14 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   const double seconds = frame.stamp - last_good_stamp_;
   if (seconds > 0.0) {
     velocity_ = logSe3(T_reference_last_.inverse() * T_reference_camera) / seconds;
+    last_velocity_ = *velocity_;
   }
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
   brightness_ = alignment.brightness;
+  loss_.learn(alignment);
   last_good_stamp_ = frame.stamp;
   usable_lost_ = 0.0;
+  last_was_usable_ = true;
 
   FrameResult result;
   result.status = TrackingStatus::kTracked;
@@ -114,6 +123,9 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   result.reference = reference_.view->id;
   result.T_reference_camera = T_reference_camera;
   result.information = alignment.information;
+  result.overlap = alignment.overlap;
+  result.inliers = alignment.inliers;
+  result.grey_residual = alignment.scale.sigma_grey;
   if (leaving) {
     openKeyframe(frame, result.T_odom_camera,
                  {{result.reference, T_reference_camera, result.information}});
@@ -123,22 +135,53 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   return result;
 }
 
-/// The alignment to the reference failed on an image that is good enough for one.
+/// The reference could not be followed on an image that is good enough for it: looks for it and
+/// for earlier keyframes without trust in the motion.
 FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& fault) {
   const double since_last = frame.stamp - last_stamp_;
   if (last_was_usable_ && isLost()) usable_lost_ += std::min(since_last, kLongestFrameGap);
   last_was_usable_ = true;
-  if (const std::optional<Relocalisation> found = relocaliser_.find(pyramid_, history_)) {
-    switchTo(*found);
-    FrameResult result = accept(frame, found->alignment, false);
-    result.status = TrackingStatus::kRelocalised;
-    velocity_.reset();
-    return result;
-  }
+  const auto is_doubtless = [this](const Alignment& alignment) {
+    return loss_.findDoubt(alignment).empty();
+  };
+  const std::optional<Relocalisation> found = relocaliser_.find(
+      pyramid_, {{reference_.view, reference_.points, possibleMotions(frame.stamp)}}, history_,
+      is_doubtless);
+  if (found) return resume(frame, *found);
   if (usable_lost_ < options_.lost.new_segment_after) return lose(fault);
   if (wheels_since_good_) return bridgeByWheels(frame);
   endSegment();
   return openSegment(frame);
+}
+
+/// Where the camera may have gone since the last good frame: as predicted, nowhere, on as before at
+/// some speed and with another turn, or straight ahead.
+std::vector<Eigen::Isometry3d> TrackingSession::possibleMotions(double stamp) const {
+  std::vector<Eigen::Isometry3d> motions = {T_reference_predicted_, T_reference_last_};
+  const double seconds = std::min(stamp - last_good_stamp_, kLongestExtrapolation);
+  for (const double share : {0.6, 1.0}) {
+    for (const double turn : {0.0, -0.15, 0.15, -0.3, 0.3}) {
+      motions.push_back(T_reference_last_ * expSe3(last_velocity_ * (share * seconds)) *
+                        Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()));
+    }
+  }
+  for (const double forwards : {0.4, 0.8, 1.2}) {
+    motions.push_back(T_reference_last_ * Eigen::Translation3d(0.0, 0.0, forwards));
+  }
+  return motions;
+}
+
+FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation& found) {
+  const bool is_elsewhere = found.view != reference_.view;
+  if (is_elsewhere) switchTo(found);
+  const bool leaving = selector_.isLeavingKeyframe(found.alignment.T_reference_current,
+                                                   found.alignment.normal_matrix);
+  FrameResult result = accept(frame, found.alignment, leaving);
+  if (is_elsewhere) {
+    result.status = TrackingStatus::kRelocalised;
+    velocity_.reset();
+  }
+  return result;
 }
 
 /// The pose stays where it was last known, or goes with the wheels.

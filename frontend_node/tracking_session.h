@@ -45,6 +45,8 @@ class TrackingSession {
   [[nodiscard]] FrameResult accept(const RgbdFrame& frame, const Alignment& alignment,
                                    bool leaving);
   [[nodiscard]] FrameResult recover(const RgbdFrame& frame, const std::string& fault);
+  [[nodiscard]] std::vector<Eigen::Isometry3d> possibleMotions(double stamp) const;
+  [[nodiscard]] FrameResult resume(const RgbdFrame& frame, const Relocalisation& found);
   [[nodiscard]] FrameResult lose(const std::string& reason);
   [[nodiscard]] FrameResult bridgeByWheels(const RgbdFrame& frame);
   [[nodiscard]] FrameResult openSegment(const RgbdFrame& frame);
@@ -73,6 +75,7 @@ class TrackingSession {
   Eigen::Isometry3d T_reference_last_ = Eigen::Isometry3d::Identity();       ///< last good frame
   Eigen::Isometry3d T_reference_predicted_ = Eigen::Isometry3d::Identity();  ///< this frame
   std::optional<Vector6d> velocity_;                                         ///< [m/s, rad/s]
+  Vector6d last_velocity_ = Vector6d::Zero();                                ///< the same, kept
   Brightness brightness_;
   double last_stamp_ = 0.0;
   double last_good_stamp_ = 0.0;

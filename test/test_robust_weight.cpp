@@ -74,5 +74,17 @@ TEST(RobustWeight, UnseenPointsDoNotCount) {
   EXPECT_DOUBLE_EQ(estimate(samples, {5.0, 0.1, 1e-4}).sigma_q, before.sigma_q);
 }
 
+TEST(RobustWeight, VectorAndScalarLoopsAgreeToRounding) {
+  const Samples samples = drawSamples(0.1);
+  const Whitening whitening = makeWhitening({5.0, 0.06, 15.0}, 5.0);
+  const ScatterSums scalar = sumScatterScalar(samples.view(), whitening);
+  const ScatterSums vector = sumScatterVector(samples.view(), whitening);
+  // Float sums of 512 terms a lane.
+  EXPECT_EQ(scalar.seen, vector.seen);
+  EXPECT_NEAR(scalar.grey_grey, vector.grey_grey, 1e-5 * scalar.grey_grey);
+  EXPECT_NEAR(scalar.q_q, vector.q_q, 1e-5 * scalar.q_q);
+  EXPECT_NEAR(scalar.grey_q, vector.grey_q, 1e-5 * std::sqrt(scalar.grey_grey * scalar.q_q));
+}
+
 }  // namespace
 }  // namespace planecloud

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
 #include "tracking_trials.h"
@@ -43,7 +42,7 @@ double sharedView(const RgbdFrame& frame, const RgbdFrame& other,
 }
 
 /// True when the first good image shows what a frame that became a keyframe had shown.
-bool isSeenBefore(const Trial& trial, const std::map<KeyframeId, double>& stamps) {
+bool isSeenBefore(const Trial& trial, const KeyframeStamps& stamps) {
   if (trial.end >= trial.set.frames.size()) return false;
   const RgbdFrame& live = *trial.set.frames[trial.end];
   const auto T_world_live = poseAt(trial.set.truth, live.stamp);
@@ -66,9 +65,7 @@ bool isSeenBefore(const Trial& trial, const std::map<KeyframeId, double>& stamps
 }  // namespace
 
 TrialOutcome judgeTrial(const Trial& trial, const std::vector<FrameResult>& results,
-                        const std::vector<Keyframe>& keyframes) {
-  std::map<KeyframeId, double> stamps;
-  for (const Keyframe& keyframe : keyframes) stamps[keyframe.id] = keyframe.stamp;
+                        const KeyframeStamps& stamps) {
   TrialOutcome outcome;
   outcome.seen_before = isSeenBefore(trial, stamps);
   outcome.regained_after = kNever;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,8 +42,11 @@ struct TrialOutcome {
   int segments = 0;
 };
 
-/// Judges one run over the trial's frames; `keyframes` are those it sent.
+/// Stamps of keyframes [s].
+using KeyframeStamps = std::map<KeyframeId, double>;
+
+/// Judges one run over the trial's frames; `stamps` are those of all its keyframes.
 [[nodiscard]] TrialOutcome judgeTrial(const Trial& trial, const std::vector<FrameResult>& results,
-                                      const std::vector<Keyframe>& keyframes);
+                                      const KeyframeStamps& stamps);
 
 }  // namespace planecloud
