@@ -34,6 +34,7 @@ namespace false_closures {
 constexpr double kSpacing = 0.25;  // of keyframes [m]
 constexpr double kRounds = 3.0;
 constexpr std::size_t kGroup = 5;
+constexpr std::size_t kOptimiseEvery = 20;  // keyframes
 
 struct Offer {
   std::size_t from = 0;
@@ -155,8 +156,8 @@ inline FalseClosureResult runFalseClosures(const FalseClosureTrial& trial,
       const ClosureAdmission admission = consistency.offer(
           graph, closure, [](const ComponentJoin&, const std::vector<GraphEdge>&) { return true; });
       for (const GraphEdge& accepted : admission.closures) graph.addEdge(accepted);
-      if (!admission.closures.empty()) graph.optimize();
     }
+    if (i % kOptimiseEvery == 0) graph.optimize();
   }
   graph.optimize();
   double sum = 0.0;

@@ -202,7 +202,7 @@ TEST(ExportMap, PaintsWhatTheCamerasSaw) {
   MapSnapshot map = smallMap();
   auto textured = std::make_shared<MapKeyframe>(*map.nodes[0].keyframe);
   auto received = std::make_shared<Keyframe>();
-  received->planes.camera = textured->planes->camera;
+  received->planes.camera = textured->planes.camera();
   received->texture.format = "jpeg-color";
   cv::imencode(".jpg", cv::Mat(24, 32, CV_8UC3, cv::Scalar(0, 200, 0)), received->texture.bytes);
   textured->keyframe = received;
