@@ -132,6 +132,7 @@ inline FalseClosureResult runFalseClosures(const FalseClosureTrial& trial,
   const std::vector<Eigen::Isometry3d> truth = truePoses();
   std::vector<Offer> offers = trueOffers(truth, random);
   falsify(truth, trial.false_share, random, offers);
+  std::mt19937 odometry(trial.seed + 1000);  // the same whatever is replaced
   const DriftOptions& drift = options.loop_closure.drift;
   PoseGraph graph(options.graph);
   ClosureConsistency consistency(options.loop_closure.consistency, drift);
@@ -139,7 +140,7 @@ inline FalseClosureResult runFalseClosures(const FalseClosureTrial& trial,
   std::size_t next = 0;
   graph.addNode(idOf(0), truth[0]);
   for (std::size_t i = 1; i < truth.size(); ++i) {
-    const Offer step{i - 1, i, truth[i - 1].inverse() * truth[i] * noise(0.004, 0.003, random)};
+    const Offer step{i - 1, i, truth[i - 1].inverse() * truth[i] * noise(0.004, 0.003, odometry)};
     graph.addNode(idOf(i), graph.pose(static_cast<int>(i) - 1) * step.T_from_to);
     graph.addEdge(edgeOf(EdgeKind::kOdometry, step, 0.004, 0.003));
     for (; next < offers.size() && offers[next].to == i; ++next) {
