@@ -57,6 +57,22 @@ void BackendNode::insert(Task task) {
   publishState();
   receiver_.settle(task.source, id);
   reportInsertion(id, result);
+  optimiseWhenDue();
+}
+
+void BackendNode::optimiseWhenDue() {
+  if (optimising_.valid() || !backend_.optimisationDue()) return;
+  const auto optimisation = std::make_shared<GraphOptimisation>(backend_.startOptimisation());
+  const auto take_over = [this, optimisation] {
+    backend_.finishOptimisation(*optimisation);
+    optimising_ = {};
+    publishState();
+    optimiseWhenDue();
+  };
+  optimising_ = std::async(std::launch::async, [this, optimisation, take_over] {
+    optimisation->run();
+    tasks_.push({std::nullopt, 0, take_over, std::make_shared<std::promise<void>>()});
+  });
 }
 
 void BackendNode::reportInsertion(const KeyframeId& id, const InsertionResult& result) {

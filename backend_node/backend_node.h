@@ -25,7 +25,8 @@
 namespace planecloud {
 
 /// The backend as a ROS node: keyframes in, the map out. One thread owns the map and takes
-/// keyframes in the order of their arrival; it waits for nobody.
+/// keyframes in the order of their arrival; it waits for nobody. Another one optimises the whole
+/// graph now and then.
 class BackendNode {
  public:
   /// Throws std::invalid_argument for options that cannot be.
@@ -44,6 +45,7 @@ class BackendNode {
 
   void work();
   void insert(Task task);
+  void optimiseWhenDue();
   void reportInsertion(const KeyframeId& id, const InsertionResult& result);
   /// Runs `command` in the thread that owns the map and waits for it.
   void runInOrder(std::function<void()> command);
@@ -66,6 +68,7 @@ class BackendNode {
 
   MapPublisher map_publisher_;
   BoundedQueue<Task> tasks_;
+  std::future<void> optimising_;  ///< the whole graph; touched by `working_` only
   KeyframeReceiver receiver_;
   ros::Publisher diagnostics_;
   ros::ServiceServer optimize_service_;
