@@ -3,6 +3,7 @@
 #include "planecloud_slam/frontend_node/history_aligner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "planecloud_slam/plane_fit/appearance_descriptor.h"
@@ -16,6 +17,18 @@ constexpr double kMaxCorrection = 0.15;     // [m]
 constexpr double kMaxTurnCorrection = 0.1;  // [rad]
 /// Where the relation is unknown nothing else vouches for an alignment.
 constexpr double kUnknownMinInliers = 0.85;
+
+/// Depth ratio beyond which one image shows the other's surfaces at another resolution, which
+/// biased alignments along the axis by a centimetre in the hallway.
+constexpr double kMaxZoom = 0.12;
+
+/// Motion along the optical axis as a share of the points' mean distance.
+double zoom(const ReferencePoints& points, const Eigen::Isometry3d& T) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points.count; ++i) sum += static_cast<double>(points.q[i]);
+  const auto count = static_cast<double>(std::max<std::size_t>(points.count, 1));
+  return std::abs(T.translation().z()) * sum / count;
+}
 
 }  // namespace
 
@@ -37,6 +50,7 @@ std::vector<HistoryAligner::Candidate> HistoryAligner::findCandidates(
     if (candidate.located) {
       const Eigen::Isometry3d T_this_view =
           task.view->T_odom_camera.inverse() * view->T_odom_camera;
+      if (zoom(points, T_this_view) > kMaxZoom) continue;
       const RgbdLevel& coarse = view->pyramid.levels().back();
       computeResiduals(points, coarse, T_this_view.inverse(), {}, residuals_);
       const double share = static_cast<double>(residuals_.seen_count) /
