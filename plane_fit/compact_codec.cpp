@@ -153,6 +153,10 @@ PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   const TileQuantiser quantiser(cloud.camera, grid, step);
   cloud.tiles.reserve(count);
   const auto decodeTile = [&](const CodedTile& tile) {
+    // In the clipped corner several nodes have the same pixels: the coarsest is meant.
+    if (!(grid.find(grid.rect(tile.node)) == tile.node)) {
+      throw PlaneCloudDecodeError("plane cloud: impossible tile");
+    }
     const auto plane = quantiser.dequantise(tile.plane, grid.rect(tile.node), tile.node.level);
     if (!plane) throw PlaneCloudDecodeError("plane cloud: impossible plane coefficients");
     cloud.tiles.push_back(*plane);
