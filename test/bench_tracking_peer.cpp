@@ -85,11 +85,9 @@ void comparePeer(const FrameSets& sets, const FrontendOptions& options) {
     std::printf("%-22s %-14s %6.1fx %6.1fx\n", set->name.c_str(), "faster by",
                 quantile(peer.track_times, 0.5) / quantile(own.track_times, 0.5),
                 quantile(peer.track_times, 0.95) / quantile(own.track_times, 0.95));
-    const double recorded = set->frames.back()->stamp - set->frames.front()->stamp;
     const double per_frame = (own.keyframe_time + quantile(own.track_times, 0.5) *
                                                       static_cast<double>(own.frames.size())) /
                              static_cast<double>(own.frames.size());
-    (void)recorded;
     std::printf("%-22s share of a core at 30 Hz: %.0f %%\n", set->name.c_str(),
                 100.0 * 30.0 * per_frame);
   }
