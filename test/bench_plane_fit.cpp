@@ -9,13 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "plane_fit_peers.h"
 #include "planecloud_slam/plane_fit/plane_cloud_codec.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 #include "planecloud_slam/plane_fit/tile_kernels.h"
 #include "recorded_depth.h"
 
-/// Fit, encode and decode on recorded depth: milliseconds, planes, errors and bytes.
+/// Fit, encode and decode on recorded depth: milliseconds, planes, errors and bytes; then the times
+/// of other plane extractors on the same frames.
 ///
 ///     bench_plane_fit [FRAMES [REPETITIONS]]
 namespace planecloud {
@@ -27,6 +29,7 @@ struct Setting {
   const char* name;
   QuadtreeFitterOptions fitter;
   CodecOptions codec;
+  bool is_peer = false;  ///< what other extractors are compared with
 };
 
 QuadtreeFitterOptions fixed(double tolerance, bool along_ray) {
@@ -38,9 +41,9 @@ QuadtreeFitterOptions fixed(double tolerance, bool along_ray) {
 }
 
 std::vector<Setting> settings() {
-  return {{"fixed 13.1 mm", fixed(0.0131, true), {}},
+  return {{"fixed 13.1 mm", fixed(0.0131, true), {}, true},
           {"fixed 13.1 mm, no ray test", fixed(0.0131, false), {}},
-          {"fixed 2.7 mm", fixed(0.0027, true), {}},
+          {"fixed 2.7 mm", fixed(0.0027, true), {}, true},
           {"fixed 2.7 mm, no ray test", fixed(0.0027, false), {}},
           {"default", {}, {}}};
 }
@@ -109,6 +112,41 @@ void print(const Setting& setting, const Totals& totals, double frames) {
               1e3 * totals.depth / frames, 100.0 * (totals.decoded_depth / totals.depth - 1.0));
 }
 
+/// Median milliseconds of a peer, beside our medians at 13.1 and 2.7 mm.
+template <typename Extract>
+void printPeer(const char* name, const RecordedDepth& recorded, const std::vector<double>& ours,
+               Extract&& extract) {
+  std::vector<double> times;
+  double planes = 0.0;
+  for (const Image<float>& depth : recorded.depth) {
+    const ExtractedPlanes extracted = extract(depth);
+    times.push_back(extracted.milliseconds);
+    planes += static_cast<double>(extracted.planes);
+  }
+  const double median = quantile(times, 0.5);
+  if (median == 0.0) {
+    std::printf("%-36s skipped: the library is not there\n", name);
+    return;
+  }
+  std::printf("%-36s %7.2f ms %7.0f planes   %.1f / %.1f times ours\n", name, median,
+              planes / static_cast<double>(recorded.depth.size()), median / ours[0],
+              median / ours[1]);
+}
+
+void printPeers(const RecordedDepth& recorded, const std::vector<double>& ours) {
+  const Camera camera(recorded.camera);
+  printPeer("OpenCV RgbdPlane, block 20", recorded, ours,
+            [&](const Image<float>& depth) { return extractByRgbdPlane(depth, camera); });
+  printPeer("PCL organized multi-plane, normals", recorded, ours,
+            [&](const Image<float>& depth) { return extractByPcl(depth, camera); });
+  for (const double tolerance : {0.0131, 0.0027}) {
+    printPeer(tolerance > 0.01 ? "the paper, 24 to 3 px, 13.1 mm" : "the paper, 24 to 3 px, 2.7 mm",
+              recorded, ours, [&](const Image<float>& depth) {
+                return extractAsInThePaper(depth, camera, tolerance);
+              });
+  }
+}
+
 int run(std::size_t frames, int repetitions) {
   std::printf("kernels: %s\n", vectorTileKernels().name);
   for (const char* sequence : {"tum_fr1_xyz_first_300", "tum_fr3_cabinet_58"}) {
@@ -119,10 +157,13 @@ int run(std::size_t frames, int repetitions) {
     }
     std::printf("\n%-28s %5s %5s %5s %5s %6s %6s %5s %6s %7s %6s %6s\n", sequence, "fit", "p95",
                 "enc", "dec", "planes", "bytes", "bits", "cov %", "p-pl mm", "dep mm", "dec %");
+    std::vector<double> ours;
     for (const Setting& setting : settings()) {
-      print(setting, measure(setting, recorded, repetitions),
-            static_cast<double>(recorded.depth.size()));
+      const Totals totals = measure(setting, recorded, repetitions);
+      print(setting, totals, static_cast<double>(recorded.depth.size()));
+      if (setting.is_peer) ours.push_back(quantile(totals.fit, 0.5));
     }
+    printPeers(recorded, ours);
   }
   return 0;
 }
