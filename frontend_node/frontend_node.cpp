@@ -110,8 +110,8 @@ void FrontendNode::trackFrame(const InputFrame& input) {
   try {
     const FrontendOptions live = live_options_.get().first.frontend;
     tracker_.setKeyframeOptions(live.keyframe);
-    TrackedFrame tracked = tracker_.track(
-        input, {input_.isRectified(), live.texture.format == TextureFormat::kColor});
+    TrackedFrame tracked =
+        tracker_.track(input, {input_.isRectified(), live.texture.format == TextureFormat::kColor});
     ++counters_.frames;
     counters_.track_time = seconds(start);
     reportLoss(tracked.result);

@@ -58,6 +58,6 @@ planecloud_slam_uninstall_component_folders()
 catkin_package(
   LIBRARIES ${PROJECT_NAME}_conversions ${PROJECT_NAME}_icap ${PROJECT_NAME}_plane_fit
   CATKIN_DEPENDS
-    diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp sensor_msgs std_msgs std_srvs
+    diagnostic_msgs dynamic_reconfigure geometry_msgs message_runtime nav_msgs roscpp sensor_msgs std_msgs std_srvs
     tf2_msgs visualization_msgs
   DEPENDS EIGEN3)

@@ -51,8 +51,8 @@ class Drive {
   void addHint(double distance, Keyframe& keyframe) const {
     const double first_round = std::fmod(distance, kHallRound);
     const KeyframeId hint{hint_robot_, 1, static_cast<std::uint32_t>(first_round / kSpacing)};
-    const bool is_past = hint.robot != robot_ || hint.session != session_ ||
-                         hint.number + 10 < keyframe.id.number;
+    const bool is_past =
+        hint.robot != robot_ || hint.session != session_ || hint.number + 10 < keyframe.id.number;
     if (!hint_robot_.empty() && is_past) keyframe.closure_hints.push_back(hint);
   }
 
