@@ -12,7 +12,7 @@ namespace planecloud {
 /// What the target's camera says of the source's fine pieces once they are moved into its frame.
 /// Shares are weighted by the pixels of the pieces.
 struct VisibilityReport {
-  double total = 0.0;         ///< all pieces of the source [px]
+  double total = 0.0;         ///< all fine pieces of the source, a sample of its view [px]
   double in_view = 0.0;       ///< projected into the target's image, facing its camera [px]
   double agreeing = 0.0;      ///< on a tile of the target, same orientation [px]
   double differing = 0.0;     ///< at the target's depth but of another orientation [px]

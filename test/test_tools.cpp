@@ -68,8 +68,10 @@ TEST_F(ToolsTest, ExitWithTwoAfterWrongUse) {
       {REPLAY, "hallway:1 --camera 1,2,3" + out},        // too few numbers
       {COMPRESS, "hallway:1 --min-tile 1"},              // out of range
       {COMPRESS, "hallway:1 --acceptance sometimes"},    // unknown
-      {COMPRESS, "hallway:1 --encoding lossless"},       // not there
-      {COMPRESS, "hallway:1 --mask"},                    // not there
+      {COMPRESS, "hallway:1 --encoding sometimes"},      // unknown
+      {COMPRESS, "hallway:1 --texture blue"},            // unknown
+      {COMPRESS, "hallway:1 --lambda -1"},               // out of range
+      {COMPRESS, "hallway:1 --every 0"},                 // out of range
       {COMPRESS, "hallway:1 hallway:2"},                 // two inputs
       {EVALUATE_TRAJECTORY, "one.txt"},                  // an odd number
   };

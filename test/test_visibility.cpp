@@ -22,7 +22,7 @@ TEST(Visibility, AgreesWhenBothSawTheSame) {
   const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
   const VisibilityReport report =
       checkVisibility(viewOf(wallAt(2.0), 1), viewOf(wallAt(2.0), 2), identity);
-  EXPECT_EQ(report.total, 640 * 480);
+  EXPECT_GT(report.total, 640 * 480 / 10) << "the pieces are a sample of the view";
   EXPECT_EQ(report.viewShare(), 1.0);
   EXPECT_GT(report.overlap(), 0.99);
   EXPECT_EQ(report.seenThroughShare(), 0.0);
