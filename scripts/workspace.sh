@@ -11,8 +11,11 @@ checkout="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
 export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"
 export LC_ALL=C.UTF-8
 export USER="${USER:-$(id -un)}"
-export ROS_HOSTNAME="${ROS_HOSTNAME:-localhost}"
-export ROS_MASTER_URI="${ROS_MASTER_URI:-http://localhost:11311}"
+# A bare root has no /etc/hosts, and nothing there knows localhost.
+local_host=localhost
+getent ahosts localhost >/dev/null || local_host=127.0.0.1
+export ROS_HOSTNAME="${ROS_HOSTNAME:-$local_host}"
+export ROS_MASTER_URI="${ROS_MASTER_URI:-http://$local_host:11311}"
 # Recordings beside the checkout; tests on real data are skipped without them.
 if [ -d "$checkout/../shared/data" ]; then
   export PLANECLOUD_SLAM_DATA="${PLANECLOUD_SLAM_DATA:-$checkout/../shared/data}"
