@@ -3,6 +3,7 @@
 """Runs `compress` and reads what it measured, image by image."""
 
 import csv
+import json
 import pathlib
 import subprocess
 import tempfile
@@ -11,6 +12,16 @@ import numpy
 
 COLUMNS = ("planes", "bytes", "raw_bytes", "coverage", "point_plane_mm", "depth_error_mm", "fit_ms",
            "encode_ms")
+
+
+def words(flags):
+    """As on a command line; True stands for a flag without a value."""
+    result = []
+    for key, value in flags.items():
+        result.append("--" + key.replace("_", "-"))
+        if value is not True:
+            result.append(str(value))
+    return result
 
 
 class Sequence:
@@ -37,10 +48,14 @@ class Sequence:
         return {path.stem.rsplit("_", 1)[-1]: path
                 for path in pathlib.Path(folder).glob(pathlib.Path(prefix).name + "*.png")}
 
+    def peers(self, **flags):
+        """What `bench_figures` measures of the paper's algorithm and of other codecs."""
+        command = ["rosrun", "planecloud_slam", "bench_figures", self.path, *self._selection]
+        result = subprocess.run(command + words(flags), check=True, text=True,
+                                stdout=subprocess.PIPE)
+        return json.loads(result.stdout)
+
     def _run(self, arguments, flags):
         command = ["rosrun", "planecloud_slam", "compress", self.path, *self._selection]
         command += [str(argument) for argument in arguments]
-        for key, value in flags.items():
-            flag = "--" + key.replace("_", "-")
-            command += [flag] if value is True else [flag, str(value)]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(command + words(flags), check=True, stdout=subprocess.DEVNULL)

@@ -7,7 +7,6 @@ anew, each beside what the paper says."""
 import argparse
 import html
 import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -24,10 +23,6 @@ COARSE, FINE = 0.0131, 0.0027  # the paper's tolerances [m]
 # The paper's fit: 24 px tiles, one tolerance for all depths, no test along the ray, 32 B a plane.
 PAPER_TILES = {"initial_tile": 24, "acceptance": "fixed", "lambda": 0}
 KB = 1e-3
-
-
-def mean_and_spread(values):
-    return f"{values.mean():.2f} ± {values.std():.2f}"
 
 
 class Page:
@@ -116,15 +111,6 @@ def draw_band(axis, x, columns, key, factor, **style):
     axis.fill_between(x, mean - spread, mean + spread, alpha=0.15, color=line.get_color())
 
 
-def plain_curve(sequence, tolerance):
-    """The paper's algorithm in plain form: the same figures for budgets of its own range."""
-    bench = pathlib.Path(os.environ["PLANECLOUD_SLAM_BENCHES"]) / "bench_plane_fit"
-    result = subprocess.run([bench, "--paper-curve", sequence.path, str(tolerance)], check=True,
-                            text=True, capture_output=True)
-    return numpy.array([[float(v) for v in line.split(",")]
-                        for line in result.stdout.splitlines() if line[0].isdigit()])
-
-
 def figure_3(page, sequence):
     """What a time budget buys."""
     figure, (area, planes) = plt.subplots(1, 2, figsize=(13, 5))
@@ -136,7 +122,7 @@ def figure_3(page, sequence):
         draw_band(size, budgets, columns, "raw_bytes", KB, color="tab:red", **style)
         draw_band(size, budgets, columns, "bytes", KB, color="tab:green", **style)
         draw_band(planes, budgets, columns, "planes", 1.0, color="tab:blue", **style)
-        plain = plain_curve(sequence, tolerance)
+        plain = numpy.array(sequence.peers(tolerance=tolerance, min_tile=8)["paper"])
         area.plot(plain[:, 0], 100.0 * plain[:, 1], linestyle=dashes, color="tab:grey")
         planes.plot(plain[:, 0], plain[:, 2], linestyle=dashes, color="tab:grey",
                     label=f"{1e3 * tolerance:.1f} mm, the paper's algorithm")
@@ -162,20 +148,12 @@ def figure_4(page, sequence):
                                    ("this codec, lambda from 50 to 0.5", codec, "s-")):
         axis.plot([c["bytes"].mean() * KB for c in columns],
                   [c["depth_error_mm"].mean() for c in columns], marker, label=label)
-    for name, points in peer_curves(sequence).items():
+    for name, points in sequence.peers(peers=True).get("peers", {}).items():
         axis.plot([p[0] * KB for p in points], [p[1] for p in points], "^:", label=name)
     axis.set(xscale="log", yscale="log", xlabel="KB an image", ylabel="mean depth error [mm]")
     axis.legend()
     page.figure(f"figure_4_{sequence.name}", figure,
                 "Fig. 4: the elbow of its curve lies at 1.2 mm and some 40 KB.")
-
-
-def peer_curves(sequence):
-    """Bytes and depth error [mm] of other codecs on the same images."""
-    bench = pathlib.Path(os.environ["PLANECLOUD_SLAM_BENCHES"]) / "bench_plane_cloud_codec"
-    result = subprocess.run([bench, "--peer-curves", sequence.path], check=True, text=True,
-                            capture_output=True)
-    return json.loads(result.stdout)
 
 
 def figure_5(page, sequence):

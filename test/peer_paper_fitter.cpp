@@ -16,30 +16,36 @@ constexpr int kMinTile = 3;
 
 class PaperFitter {
  public:
-  PaperFitter(const Image<float>& depth, const Camera& camera, double tolerance)
-      : depth_(depth), camera_(camera), tolerance_(tolerance) {}
+  PaperFitter(const Image<float>& depth, const Camera& camera, double tolerance, int min_tile)
+      : depth_(depth), camera_(camera), tolerance_(tolerance), min_tile_(min_tile) {}
 
-  std::size_t countPlanes() {
+  /// Calls `accepted` with each tile that is.
+  template <typename Accepted>
+  void run(Accepted&& accepted) {
     std::queue<TileRect> queue;
     for (int y = 0; y + kInitialTile <= depth_.height(); y += kInitialTile) {
       for (int x = 0; x + kInitialTile <= depth_.width(); x += kInitialTile) {
         queue.push({x, y, kInitialTile, kInitialTile});
       }
     }
-    std::size_t planes = 0;
     for (; !queue.empty(); queue.pop()) {
       const TileRect tile = queue.front();
       if (hasCorners(tile) && meanDistance(tile, fit(tile)) <= tolerance_) {
-        ++planes;
+        accepted(tile);
         continue;
       }
       const int half = tile.width / 2;
-      if (half < kMinTile) continue;
+      if (half < min_tile_) continue;
       for (const int y : {tile.y, tile.y + half}) {
         for (const int x : {tile.x, tile.x + half}) queue.push({x, y, half, half});
       }
     }
-    return planes;
+  }
+
+  [[nodiscard]] double pixelsWithDepth(const TileRect& tile) const {
+    double count = 0.0;
+    forPixels(tile, [&](const Eigen::Vector4d&) { count += 1.0; });
+    return count;
   }
 
  private:
@@ -82,16 +88,37 @@ class PaperFitter {
   const Image<float>& depth_;
   const Camera& camera_;
   double tolerance_;
+  int min_tile_;
 };
+
+double millisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
 
 }  // namespace
 
 ExtractedPlanes extractAsInThePaper(const Image<float>& depth, const Camera& camera,
                                     double tolerance) {
   const auto start = std::chrono::steady_clock::now();
-  const std::size_t planes = PaperFitter(depth, camera, tolerance).countPlanes();
-  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-  return {time.count(), planes};
+  std::size_t planes = 0;
+  PaperFitter(depth, camera, tolerance, kMinTile).run([&](const TileRect&) { ++planes; });
+  return {millisecondsSince(start), planes};
+}
+
+std::vector<FitProgress> watchThePaper(const Image<float>& depth, const Camera& camera,
+                                       double tolerance, int min_tile) {
+  std::vector<FitProgress> progress(1);
+  const auto start = std::chrono::steady_clock::now();
+  PaperFitter fitter(depth, camera, tolerance, min_tile);
+  fitter.run([&](const TileRect& tile) {
+    FitProgress next = progress.back();
+    next.milliseconds = millisecondsSince(start);
+    next.covered += fitter.pixelsWithDepth(tile);
+    ++next.planes;
+    progress.push_back(next);
+  });
+  return progress;
 }
 
 }  // namespace planecloud

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "planecloud_slam/plane_fit/camera.h"
 
@@ -19,6 +20,16 @@ struct ExtractedPlanes {
 /// eigenvector of the 4x4 scatter matrix, mean point-to-plane distance within `tolerance` [m].
 [[nodiscard]] ExtractedPlanes extractAsInThePaper(const Image<float>& depth, const Camera& camera,
                                                   double tolerance);
+/// How far it has come after a time.
+struct FitProgress {
+  double milliseconds = 0.0;
+  double covered = 0.0;  ///< pixels with depth on accepted tiles
+  std::size_t planes = 0;
+};
+/// The same from 24 px down to `min_tile`, watched: what is there after each accepted tile.
+[[nodiscard]] std::vector<FitProgress> watchThePaper(const Image<float>& depth,
+                                                     const Camera& camera, double tolerance,
+                                                     int min_tile);
 /// OpenCV contrib `cv::rgbd::RgbdPlane`, blocks of 20 px.
 [[nodiscard]] ExtractedPlanes extractByRgbdPlane(const Image<float>& depth, const Camera& camera);
 /// PCL organized multi-plane segmentation with integral-image normals.
