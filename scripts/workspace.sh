@@ -11,11 +11,8 @@ checkout="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
 export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"
 export LC_ALL=C.UTF-8
 export USER="${USER:-$(id -un)}"
-# A bare root has no /etc/hosts, and nothing there knows localhost.
-local_host=localhost
-getent ahosts localhost >/dev/null || local_host=127.0.0.1
-export ROS_HOSTNAME="${ROS_HOSTNAME:-$local_host}"
-export ROS_MASTER_URI="${ROS_MASTER_URI:-http://$local_host:11311}"
+export ROS_HOSTNAME="${ROS_HOSTNAME:-localhost}"
+export ROS_MASTER_URI="${ROS_MASTER_URI:-http://localhost:11311}"
 # Recordings beside the checkout; tests on real data are skipped without them.
 if [ -d "$checkout/../shared/data" ]; then
   export PLANECLOUD_SLAM_DATA="${PLANECLOUD_SLAM_DATA:-$checkout/../shared/data}"
@@ -51,27 +48,40 @@ missing_packages() {
   done
 }
 
+# Nothing knows localhost where /etc/hosts is missing, as in a bare root, and roslaunch asks for it.
+name_localhost() {
+  if ! getent ahosts localhost >/dev/null; then
+    echo "127.0.0.1 localhost" | as_root tee -a /etc/hosts >/dev/null
+  fi
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  else
+    command -v sudo >/dev/null || fail "as root: $*"
+    sudo "$@"
+  fi
+}
+
 # Installs the packages for the given tags of package.xml.
 install_packages() {
+  name_localhost
   if ! command -v dpkg-query >/dev/null || ! grep -qs 'VERSION_ID="12"' /etc/os-release; then
     command -v catkin_make >/dev/null ||
       fail "this is not Debian 12: install what package.xml names (rosdep install --from-paths $checkout)"
     return 0
   fi
-  local missing sudo=()
+  local missing
   missing="$(missing_packages "$1")"
   [ -n "$missing" ] || return 0
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || fail "as root: apt-get install --no-install-recommends" $missing
-    sudo=(sudo)
-  fi
   local options=(-q -o DPkg::Lock::Timeout=600 -o Dpkg::Use-Pty=0)
   # Without an init system this is a container or chroot: an interrupted installation is thrown away
   # rather than repaired, so dpkg need not wait for the disk after every file.
   [ -d /run/systemd/system ] || options+=(-o DPkg::Options::=--force-unsafe-io)
   say "Installing $(wc -w <<<"$missing") packages"
-  "${sudo[@]}" apt-get "${options[@]}" update
-  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "${options[@]}" -y install \
+  as_root apt-get "${options[@]}" update
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get "${options[@]}" -y install \
     --no-install-recommends $missing
 }
 
