@@ -49,7 +49,7 @@ class Frontend::Impl {
     checkSize(raw.grey.width(), raw.grey.height(), camera_, "colour");
     checkSize(raw.depth.width(), raw.depth.height(), camera_, "depth");
     if (!raw.color.empty()) checkSize(raw.color.width(), raw.color.height(), camera_, "texture's");
-    if (raw.stamp < last_stamp_) session_.endSegment();
+    if (raw.stamp < last_stamp_) startAfresh();
     last_stamp_ = raw.stamp;
     if (!rectifier_) return session_.track(raw, T_previous_current);
     rectifier_->rectify(raw, rectified_);
@@ -72,6 +72,11 @@ class Frontend::Impl {
       completed.push_back(std::move(keyframe));
     }
     return completed;
+  }
+
+  void startAfresh() {
+    session_.endSegment();
+    session_.forgetHistory();
   }
 
   void setKeyframeOptions(const KeyframeSelectorOptions& options) {
@@ -107,7 +112,7 @@ std::vector<CompletedKeyframe> Frontend::takeCompleted() { return impl_->takeCom
 
 void Frontend::finish() { impl_->session().endSegment(); }
 
-void Frontend::startNewSegment() { impl_->session().endSegment(); }
+void Frontend::startNewSegment() { impl_->startAfresh(); }
 
 void Frontend::changeCamera(const CameraIntrinsics& camera) { impl_ = impl_->continueWith(camera); }
 

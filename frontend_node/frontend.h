@@ -86,7 +86,8 @@ class Frontend {
   /// Completes the current keyframe (end of a recording, shutdown); the next frame opens a segment.
   void finish();
 
-  /// Ends the segment: time went backwards or the camera changed. The open keyframe is completed.
+  /// Ends the segment and forgets the short-term history: time went backwards. The open keyframe is
+  /// completed.
   void startNewSegment();
 
   /// Goes on with another camera: ends the segment and keeps counting keyframes.

@@ -31,6 +31,8 @@ class TrackingSession {
 
   /// Completes the open keyframe; the next frame opens a segment where this one ended.
   void endSegment();
+  /// Nothing seen so far will be looked for again: time went backwards.
+  void forgetHistory() { history_.clear(); }
   void setNextPose(const Eigen::Isometry3d& T_odom_camera) { T_odom_start_ = T_odom_camera; }
   void setKeyframeOptions(const KeyframeSelectorOptions& options) { selector_.setOptions(options); }
   [[nodiscard]] std::vector<CompletedKeyframe> takeCompleted();

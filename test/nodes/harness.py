@@ -20,14 +20,15 @@ FOCAL_LENGTH = 285.0
 
 
 def wait_for(condition, what, timeout=15.0):
-    """Returns what `condition` returns as soon as that is true; fails after `timeout` seconds."""
+    """Returns what `condition` returns as soon as that is true; fails after `timeout` seconds with
+    `what`, a text or a function that makes it then."""
     deadline = time.monotonic() + timeout
     while time.monotonic() < deadline:
         result = condition()
         if result:
             return result
         time.sleep(0.05)
-    raise AssertionError(f"timeout: {what}")
+    raise AssertionError(f"timeout: {what() if callable(what) else what}")
 
 
 class Watch:
@@ -54,11 +55,12 @@ class Watch:
         return [line for line in list(self.log) if text in line]
 
     def wait_for_words(self, text, timeout=15.0):
-        wait_for(lambda: self.said(text), f"{self.name} says '{text}'; it said {self.log}", timeout)
+        wait_for(lambda: self.said(text),
+                 lambda: f"{self.name} says '{text}'; it said {self.log}", timeout)
 
     def wait_for_value(self, key, value, timeout=15.0):
         wait_for(lambda: self.values.get(key) == str(value),
-                 f"{self.name} has {key} = {value}; it has {self.values}", timeout)
+                 lambda: f"{self.name} has {key} = {value}; it has {self.values}", timeout)
 
     def wait_until_steady(self, key, seconds=4.0, timeout=120.0):
         """Returns the value once it has not changed for some time."""

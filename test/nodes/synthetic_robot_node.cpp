@@ -37,7 +37,9 @@ class Drive {
   }
 
   void run() {
-    for (double s = 0.0; s <= distance_ && ros::ok(); s += kSpacing) {
+    const int last = static_cast<int>(distance_ / kSpacing + 1e-6);
+    for (int i = 0; i <= last && ros::ok(); ++i) {
+      const double s = kSpacing * i;
       Keyframe keyframe = driver_.see(hallPose(start_ + s));
       if (static_cast<int>(keyframe.id.number) == lost_at_) keyframe.edges.clear();
       addHint(start_ + s, keyframe);
