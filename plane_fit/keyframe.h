@@ -53,7 +53,8 @@ struct Keyframe {
   /// Pose of the camera's optical frame in the frontend's odometry frame.
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
   EncodedPlaneCloud planes;
-  /// The previous keyframe first; none at all begins a new segment of unknown relation.
+  /// First the keyframe it was tracked from: the previous one, or an earlier one found again. None
+  /// at all begins a new segment of unknown relation.
   std::vector<RelativePoseEdge> edges;
   std::vector<KeyframeId> closure_hints;  ///< keyframes the frontend believes it sees again
   std::vector<std::uint8_t> descriptor;   ///< appearance, see appearance_descriptor.h; may be empty
