@@ -119,9 +119,10 @@ make_workspace() {
   export ROS_HOME="${ROS_HOME:-$workspace/.ros}"
 }
 
-# Builds targets (all without one) quietly; shows the log when that fails.
+# Builds targets (all without one) quietly; shows the log when that fails. TESTS=ON: what needs the
+# packages of the tests as well.
 build() {
-  local log="$workspace/build.log" flags=()
+  local log="$workspace/build.log" flags=("-DCATKIN_ENABLE_TESTING=${TESTS:-OFF}")
   if [ "${WERROR:-0}" = 1 ]; then flags+=(-DPLANECLOUD_SLAM_WERROR=ON); fi
   if ! catkin_make -C "$workspace" --no-color "-j$jobs" -DCMAKE_BUILD_TYPE=Release \
     -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
