@@ -3,6 +3,7 @@
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -10,116 +11,35 @@
 namespace planecloud {
 namespace {
 
-constexpr std::ptrdiff_t kRowPadding = 16;  // floats a vector kernel may read past a row
+/// Rows of which one is looked at where errors are only reported.
+constexpr int kSampledRows = 4;
 
-std::shared_ptr<const Camera> required(std::shared_ptr<const Camera> camera) {
+const Camera& required(const std::shared_ptr<const Camera>& camera) {
   if (!camera) throw std::invalid_argument("the plane fitter needs a camera, got none");
-  return camera;
+  return *camera;
 }
 
 }  // namespace
 
-MomentPyramid::MomentPyramid(std::shared_ptr<const Camera> camera, const QuadtreeLayout& layout,
-                             const TileKernels& kernels)
-    : camera_(required(std::move(camera))),
-      kernels_(kernels),
-      grid_(layout, camera_->width(), camera_->height()),
-      stride_((camera_->width() + 2 * kRowPadding - 1) / kRowPadding * kRowPadding),
-      uniform_cells_(layout.initial_width % grid_.cellsPerSide(0) == 0) {
-  const auto pixels = static_cast<std::size_t>(stride_ * camera_->height() + kRowPadding);
-  tangents_u_.assign(pixels, 0.0F);
-  tangents_v_.assign(pixels, 0.0F);
-  inverse_depth_.assign(pixels, 0.0F);
+MomentPyramid::MomentPyramid(const std::shared_ptr<const Camera>& camera,
+                             const QuadtreeLayout& layout, const TileKernels& kernels)
+    : kernels_(kernels),
+      grid_(layout, required(camera).width(), required(camera).height()),
+      tables_(*camera, grid_),
+      uniform_cells_(layout.initial_width % grid_.cellsPerSide(0) == 0),
+      inverse_depth_(tables_.size(), 0.0F) {
   for (std::vector<float>* sums :
        {&columns_n_, &columns_q_, &columns_qu_, &columns_qv_, &columns_qq_}) {
-    sums->assign(static_cast<std::size_t>(stride_), 0.0F);
+    sums->assign(static_cast<std::size_t>(tables_.stride()), 0.0F);
   }
   levels_.resize(static_cast<std::size_t>(grid_.levels()));
   for (int i = 0; i < grid_.levels(); ++i) {
     Level& level = levels_[static_cast<std::size_t>(i)];
-    level.columns = grid_.columns(i);
-    const auto nodes = static_cast<std::size_t>(grid_.columns(i) * grid_.rows(i));
-    level.full.resize(nodes);
-    level.full_tangents.resize(nodes);
+    const std::size_t nodes = tables_.level(i).sums.size();
     level.counts.resize(nodes);
     level.depth.resize(nodes);
     level.tangents.resize(nodes);
-  }
-  tabulateTangents();
-  tabulateFullNodes();
-}
-
-void MomentPyramid::tabulateTangents() {
-  for (int row = 0; row < grid_.rows(0); ++row) {
-    for (int column = 0; column < grid_.columns(0); ++column) {
-      const TileRect root = grid_.rect({0, column, row});
-      const int center_x = root.x + root.width / 2;
-      const int center_y = root.y + root.height / 2;
-      const Eigen::Vector2f center(camera_->tangentsX()(center_x, center_y),
-                                   camera_->tangentsY()(center_x, center_y));
-      origins_.push_back(center);
-      for (int y = root.y; y < root.y + root.height; ++y) {
-        for (int x = root.x; x < root.x + root.width; ++x) {
-          tangents_u_[offset(x, y)] = camera_->tangentsX()(x, y) - center.x();
-          tangents_v_[offset(x, y)] = camera_->tangentsY()(x, y) - center.y();
-        }
-      }
-    }
-  }
-}
-
-void MomentPyramid::tabulateFullNodes() {
-  for (int row = 0; row < grid_.cellRows(); ++row) {
-    for (int column = 0; column < grid_.cellColumns(); ++column) tabulateCell(column, row);
-  }
-  for (std::size_t parent = levels_.size() - 1; parent-- > 0;) mergeFullNodes(parent);
-  for (Level& level : levels_) {
-    for (std::size_t i = 0; i < level.full.size(); ++i) {
-      if (level.full[i].n > 0.0F) prepareRegression(level.full_tangents[i], level.full[i]);
-    }
-  }
-}
-
-void MomentPyramid::prepareRegression(const TangentSums& sums, FullNode& full) {
-  TileMoments moments;
-  moments.n = full.n;
-  moments.u = sums.u;
-  moments.v = sums.v;
-  moments.uu = sums.uu;
-  moments.uv = sums.uv;
-  moments.vv = sums.vv;
-  const TangentScatterInverse inverse = invertTangentScatter(moments);
-  full.mean_u = sums.u / full.n;
-  full.mean_v = sums.v / full.n;
-  full.inverse_uu = static_cast<float>(inverse.uu);
-  full.inverse_uv = static_cast<float>(inverse.uv);
-  full.inverse_vv = static_cast<float>(inverse.vv);
-}
-
-void MomentPyramid::tabulateCell(int column, int row) {
-  const QuadtreeNode node{grid_.levels() - 1, column, row};
-  const TileRect rect = grid_.rect(node);
-  TileMoments sums;
-  for (int y = rect.y; y < rect.y + rect.height; ++y) {
-    for (int x = rect.x; x < rect.x + rect.width; ++x) {
-      sums.add(tangents_u_[offset(x, y)], tangents_v_[offset(x, y)], 0.0);
-    }
-  }
-  levels_.back().full[index(node)].n = static_cast<float>(sums.n);
-  levels_.back().full_tangents[index(node)] = {
-      static_cast<float>(sums.u), static_cast<float>(sums.v), static_cast<float>(sums.uu),
-      static_cast<float>(sums.uv), static_cast<float>(sums.vv)};
-}
-
-void MomentPyramid::mergeFullNodes(std::size_t parent_level) {
-  Level& parents = levels_[parent_level];
-  const Level& children = levels_[parent_level + 1];
-  for (std::size_t i = 0; i < children.full.size(); ++i) {
-    const auto columns = static_cast<std::size_t>(children.columns);
-    const std::size_t parent =
-        i / columns / 2 * static_cast<std::size_t>(parents.columns) + i % columns / 2;
-    parents.full[parent].n += children.full[i].n;
-    parents.full_tangents[parent] += children.full_tangents[i];
+    level.planes.resize(nodes);
   }
 }
 
@@ -139,7 +59,7 @@ bool MomentPyramid::readPixels(ImageView<Pixel> depth, const std::function<bool(
     sumCells(row);
     sumHoles(row);
   }
-  for (std::size_t parent = levels_.size() - 1; parent-- > 0;) merge(parent);
+  for (int parent = grid_.levels() - 1; parent-- > 0;) merge(parent);
   return true;
 }
 
@@ -149,8 +69,8 @@ void MomentPyramid::sumStrip(ImageView<Pixel> depth, int row) {
   DepthStrip<Pixel> strip;
   strip.depth = depth.row(y);
   strip.depth_stride = depth.stride();
-  strip.tangents = {&tangents_u_[offset(0, y)], &tangents_v_[offset(0, y)], stride_};
-  strip.inverse_depth = &inverse_depth_[offset(0, y)];
+  strip.tangents = tables_.from(0, y);
+  strip.inverse_depth = &inverse_depth_[tables_.offset(0, y)];
   strip.width = grid_.width();
   strip.rows = grid_.cellY(row + 1) - y;
   const ColumnSums sums{columns_n_.data(), columns_q_.data(), columns_qu_.data(),
@@ -170,7 +90,7 @@ void MomentPyramid::sumCells(int row) {
   const int cell_width = grid_.cellX(1);
   const int uniform = uniform_cells_ ? grid_.width() / cell_width : 0;
   kernels_.sum_cells(sums, cell_width, uniform, &cells.depth[first], &cells.counts[first]);
-  for (int column = uniform; column < cells.columns; ++column) {
+  for (int column = uniform; column < grid_.cellColumns(); ++column) {
     DepthSums sum;
     float n = 0.0F;
     for (auto x = static_cast<std::size_t>(grid_.cellX(column));
@@ -184,68 +104,85 @@ void MomentPyramid::sumCells(int row) {
     cells.depth[first + static_cast<std::size_t>(column)] = sum;
     cells.counts[first + static_cast<std::size_t>(column)] = n;
   }
+  kernels_.regress(&cells.depth[first], tables_.level(grid_.levels() - 1).full.from(first),
+                   static_cast<std::size_t>(grid_.cellColumns()), &cells.planes[first]);
 }
 
 void MomentPyramid::sumHoles(int row) {
   Level& cells = levels_.back();
-  for (int column = 0; column < cells.columns; ++column) {
-    const QuadtreeNode node{grid_.levels() - 1, column, row};
-    const std::size_t i = index(node);
-    if (cells.counts[i] == cells.full[i].n || cells.counts[i] == 0.0F) continue;
-    const TileRect rect = grid_.rect(node);
-    TangentSums sums;
-    for (int y = rect.y; y < rect.y + rect.height; ++y) {
-      for (std::size_t at = offset(rect.x, y); at < offset(rect.x + rect.width, y); ++at) {
-        const float mask = inverse_depth_[at] > 0.0F ? 1.0F : 0.0F;
-        const float u = mask * tangents_u_[at];
-        const float v = mask * tangents_v_[at];
-        sums += {u, v, u * u, u * v, v * v};
+  const std::vector<float>& full = tables_.level(grid_.levels() - 1).full.n;
+  std::size_t i = index({grid_.levels() - 1, 0, row});
+  for (int column = 0; column < grid_.cellColumns(); ++column, ++i) {
+    if (cells.counts[i] == full[i] || cells.counts[i] == 0.0F) continue;
+    cells.tangents[i] =
+        kernels_.sum_tangents(pixels(grid_.rect({grid_.levels() - 1, column, row})));
+  }
+}
+
+void MomentPyramid::merge(int parent_level) {
+  Level& parents = levels_[static_cast<std::size_t>(parent_level)];
+  const Level& children = levels_[static_cast<std::size_t>(parent_level) + 1];
+  const std::vector<float>& full = tables_.level(parent_level).full.n;
+  const auto child_columns = static_cast<std::size_t>(grid_.columns(parent_level + 1));
+  std::size_t parent = 0;
+  for (std::size_t row = 0; parent < full.size(); row += 2) {
+    for (std::size_t column = 0; column < child_columns; column += 2, ++parent) {
+      const std::size_t first = row * child_columns + column;
+      const std::array<std::size_t, 4> child = {first, first + 1, first + child_columns,
+                                                first + child_columns + 1};
+      DepthSums sum;
+      float n = 0.0F;
+      for (const std::size_t c : child) {
+        n += children.counts[c];
+        sum += children.depth[c];
       }
+      parents.depth[parent] = sum;
+      parents.counts[parent] = n;
+      if (n == full[parent] || n == 0.0F) continue;
+      parents.tangents[parent] = mergeTangents(parent_level + 1, child);
     }
-    cells.tangents[i] = sums;
   }
+  kernels_.regress(parents.depth.data(), tables_.level(parent_level).full.from(0), full.size(),
+                   parents.planes.data());
 }
 
-void MomentPyramid::merge(std::size_t parent_level) {
-  Level& parents = levels_[parent_level];
-  const Level& children = levels_[parent_level + 1];
-  const auto child_columns = static_cast<std::size_t>(children.columns);
-  for (std::size_t i = 0; i < parents.full.size(); ++i) {
-    const auto columns = static_cast<std::size_t>(parents.columns);
-    const std::size_t first = i / columns * 2 * child_columns + i % columns * 2;
-    const std::array<std::size_t, 4> child = {first, first + 1, first + child_columns,
-                                              first + child_columns + 1};
-    DepthSums sum;
-    float n = 0.0F;
-    for (const std::size_t c : child) {
-      n += children.counts[c];
-      sum += children.depth[c];
-    }
-    parents.depth[i] = sum;
-    parents.counts[i] = n;
-    if (n != parents.full[i].n && n != 0.0F) parents.tangents[i] = mergeTangents(children, child);
-  }
-}
-
-MomentPyramid::TangentSums MomentPyramid::mergeTangents(const Level& level,
-                                                        const std::array<std::size_t, 4>& nodes) {
+TangentSums MomentPyramid::mergeTangents(int level, const std::array<std::size_t, 4>& nodes) const {
+  const Level& children = levels_[static_cast<std::size_t>(level)];
+  const TangentTables::Level& tables = tables_.level(level);
   TangentSums sums;
   for (const std::size_t node : nodes) {
-    if (level.counts[node] == 0.0F) continue;
-    const bool full = level.counts[node] == level.full[node].n;
-    sums += full ? level.full_tangents[node] : level.tangents[node];
+    if (children.counts[node] == 0.0F) continue;
+    const bool full = children.counts[node] == tables.full.n[node];
+    sums += full ? tables.sums[node] : children.tangents[node];
   }
   return sums;
+}
+
+std::optional<bool> MomentPyramid::hasDepthAtCorners(const QuadtreeNode& node, int window) const {
+  const int side = grid_.cellsPerSide(node.level);
+  const std::vector<float>& counts = levels_.back().counts;
+  const std::vector<float>& full = tables_.level(grid_.levels() - 1).full.n;
+  const auto window_area = static_cast<float>(window * window);
+  for (const int row : {node.row * side, (node.row + 1) * side - 1}) {
+    for (const int column : {node.column * side, (node.column + 1) * side - 1}) {
+      const std::size_t cell = index({grid_.levels() - 1, column, row});
+      const bool is_full = counts[cell] == full[cell] && full[cell] > 0.0F;
+      if (is_full) continue;
+      if (full[cell] != window_area || side == 1) return std::nullopt;
+      if (counts[cell] == 0.0F) return false;
+    }
+  }
+  return true;
 }
 
 TileMoments MomentPyramid::moments(const QuadtreeNode& node) const {
   const Level& nodes = level(node);
   const std::size_t i = index(node);
-  const bool full = nodes.counts[i] == nodes.full[i].n;
   TileMoments moments;
   moments.n = nodes.counts[i];
   if (moments.n > 0.0) {
-    const TangentSums& tangents = full ? nodes.full_tangents[i] : nodes.tangents[i];
+    const TangentSums& tangents =
+        isFull(node) ? tables_.level(node.level).sums[i] : nodes.tangents[i];
     moments.u = tangents.u;
     moments.v = tangents.v;
     moments.uu = tangents.uu;
@@ -259,39 +196,47 @@ TileMoments MomentPyramid::moments(const QuadtreeNode& node) const {
   return moments;
 }
 
-Eigen::Vector3d MomentPyramid::regress(const QuadtreeNode& node) const {
-  const Level& nodes = level(node);
-  const std::size_t i = index(node);
-  const FullNode& full = nodes.full[i];
-  if (nodes.counts[i] != full.n) return regressInverseDepth(moments(node));
-  const DepthSums& sums = nodes.depth[i];
-  const double q = sums.q;
-  const double qu = sums.qu - full.mean_u * q;
-  const double qv = sums.qv - full.mean_v * q;
-  const double alpha = full.inverse_uu * qu + full.inverse_uv * qv;
-  const double beta = full.inverse_uv * qu + full.inverse_vv * qv;
-  return {alpha, beta, q / full.n - alpha * full.mean_u - beta * full.mean_v};
+NodePlane MomentPyramid::regressWithHoles(const QuadtreeNode& node) const {
+  const TileMoments sums = moments(node);
+  const Eigen::Vector3d plane = regressInverseDepth(sums);
+  // Residuals of a regression are orthogonal to it.
+  const double explained = plane.dot(Eigen::Vector3d(sums.qu, sums.qv, sums.q));
+  NodePlane result;
+  result.alpha = static_cast<float>(plane.x());
+  result.beta = static_cast<float>(plane.y());
+  result.gamma = static_cast<float>(plane.z());
+  const float rms = std::sqrt(static_cast<float>(std::max(0.0, (sums.qq - explained) / sums.n)));
+  const FullNodeRows full = tables_.level(node.level).full.from(index(node));
+  const float lowest = result.alpha * *full.mean_u + result.beta * *full.mean_v + result.gamma -
+                       std::abs(result.alpha) * *full.reach_u -
+                       std::abs(result.beta) * *full.reach_v;
+  result.rms = lowest >= kMinPlaneInverseDepth ? rms : -rms;
+  return result;
 }
 
-float MomentPyramid::meanSquare(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
-  const DepthSums& sums = level(node).depth[index(node)];
-  // Residuals of a regression are orthogonal to it.
-  const double explained = plane.cast<double>().dot(Eigen::Vector3d(sums.qu, sums.qv, sums.q));
-  const double mean = (sums.qq - explained) / level(node).counts[index(node)];
-  return static_cast<float>(std::max(0.0, mean));
+PixelBlock MomentPyramid::pixels(const TileRect& rect) const {
+  return {&inverse_depth_[tables_.offset(rect.x, rect.y)], tables_.from(rect.x, rect.y), rect.width,
+          rect.height};
 }
 
 ResidualSums MomentPyramid::residuals(const TileRect& rect, const Eigen::Vector3f& plane) const {
-  const std::size_t first = offset(rect.x, rect.y);
-  ResidualQuery query;
-  query.inverse_depth = &inverse_depth_[first];
-  query.tangents = {&tangents_u_[first], &tangents_v_[first], stride_};
-  query.width = rect.width;
-  query.rows = rect.height;
-  query.alpha = plane.x();
-  query.beta = plane.y();
-  query.gamma = plane.z();
-  return kernels_.residuals(query);
+  return kernels_.residuals({pixels(rect), plane.x(), plane.y(), plane.z()});
+}
+
+ResidualSums MomentPyramid::sampleResiduals(const QuadtreeNode& node,
+                                            const Eigen::Vector3f& plane) const {
+  const TileRect rect = grid_.rect(node);
+  // A plane fits rows at the rim better than those in the middle: neighbours take turns.
+  const int first = std::min((node.column + node.row) % 2, rect.height - 1);
+  PixelBlock sampled = pixels({rect.x, rect.y + first, rect.width, rect.height - first});
+  sampled.rows = (sampled.rows + kSampledRows - 1) / kSampledRows;
+  sampled.tangents.stride *= kSampledRows;
+  ResidualSums sums = kernels_.residuals({sampled, plane.x(), plane.y(), plane.z()});
+  const float scale = static_cast<float>(rect.height) / static_cast<float>(sampled.rows);
+  sums.inverse_depth *= scale;
+  sums.relative *= scale;
+  sums.depth *= scale;
+  return sums;
 }
 
 }  // namespace planecloud

@@ -40,12 +40,16 @@ TileMoments& TileMoments::operator+=(const TileMoments& other) {
 }
 
 TangentScatterInverse invertTangentScatter(const TileMoments& m) {
-  const double uu = m.uu - m.u * m.u / m.n;
-  const double uv = m.uv - m.u * m.v / m.n;
-  const double vv = m.vv - m.v * m.v / m.n;
+  const double inverse_n = 1.0 / m.n;
+  const double uu = m.uu - m.u * m.u * inverse_n;
+  const double uv = m.uv - m.u * m.v * inverse_n;
+  const double vv = m.vv - m.v * m.v * inverse_n;
   const double trace = uu + vv;
   const double det = uu * vv - uv * uv;
-  if (det > kMinSpreadRatio * trace * trace) return {vv / det, -uv / det, uu / det};
+  if (det > kMinSpreadRatio * trace * trace) {
+    const double inverse_det = 1.0 / det;
+    return {vv * inverse_det, -uv * inverse_det, uu * inverse_det};
+  }
   // One direction only: S = trace * e e^T has the pseudo-inverse S / trace^2. A single pixel has
   // no direction: what is left of its trace is rounding.
   if (!(trace > 1e-12 * (m.uu + m.vv)) || m.n < 2.0) return {};
@@ -54,11 +58,12 @@ TangentScatterInverse invertTangentScatter(const TileMoments& m) {
 
 Eigen::Vector3d regressInverseDepth(const TileMoments& m) {
   const TangentScatterInverse inverse = invertTangentScatter(m);
-  const double qu = m.qu - m.u * m.q / m.n;
-  const double qv = m.qv - m.v * m.q / m.n;
+  const double inverse_n = 1.0 / m.n;
+  const double qu = m.qu - m.u * m.q * inverse_n;
+  const double qv = m.qv - m.v * m.q * inverse_n;
   const double alpha = inverse.uu * qu + inverse.uv * qv;
   const double beta = inverse.uv * qu + inverse.vv * qv;
-  return {alpha, beta, (m.q - alpha * m.u - beta * m.v) / m.n};
+  return {alpha, beta, (m.q - alpha * m.u - beta * m.v) * inverse_n};
 }
 
 }  // namespace planecloud

@@ -157,9 +157,9 @@ void QuadtreeFitter::Impl::fitPruned(const BudgetMeter& meter, PlaneCloudStatist
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     statistics.stopped_by_bytes = !meter.hasRoomFor(tiles_.size() + 1);
     if (statistics.stopped_by_bytes) return;
-    // Errors are worth a pass over the pixels as long as there is time.
+    // Errors are worth a look at the pixels as long as there is time.
     const bool estimated = late || (i % kTilesAtOnce == 0 && is_late());
-    accept(nodes[i], estimated ? tile_fitter_.estimate(nodes[i]) : tile_fitter_.measure(nodes[i]));
+    accept(nodes[i], estimated ? tile_fitter_.estimate(nodes[i]) : tile_fitter_.sample(nodes[i]));
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/tile_fitter.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,12 +10,24 @@
 namespace planecloud {
 namespace {
 
-/// Planes are only kept where their inverse depth is at least this inside the tile [1/m]: 64 m.
-constexpr float kMinInverseDepth = 1.0F / 64.0F;
 /// Rows of a tile whose error is summed before the tile can be given up.
 constexpr int kRowsAtOnce = 16;
 /// Mean |x| over root mean square of a normal distribution.
 constexpr float kMeanOverRms = 0.798F;
+/// The power of depth with which the allowed error grows.
+int depthPower(AcceptanceRule rule) {
+  switch (rule) {
+    case AcceptanceRule::kFixed:
+      return 0;
+    case AcceptanceRule::kLinearInDepth:
+      return 1;
+    case AcceptanceRule::kNoiseScaled:
+      break;
+  }
+  return 2;
+}
+
+Eigen::Vector3f toVector(const NodePlane& plane) { return {plane.alpha, plane.beta, plane.gamma}; }
 
 }  // namespace
 
@@ -25,34 +38,36 @@ std::optional<TileFit> TileFitter::fit(const QuadtreeNode& node) const {
   const Eigen::Vector2f& origin = pyramid_.origin(node);
   const float mean_depth = 1.0F / pyramid_.meanInverseDepth(node);
   if (options_.corner_check != CornerCheck::kNone) {
-    const std::optional<Corners> corners = findCorners(rect);
-    if (!corners || !isPlanar(*corners, origin, allowedError(mean_depth))) return std::nullopt;
+    const auto corners = findCorners(rect);
+    if (!corners || !isPlanar(cornersAt(*corners), origin, allowedError(mean_depth))) {
+      return std::nullopt;
+    }
   }
-  const Eigen::Vector3f plane = pyramid_.regress(node).cast<float>();
-  if (!isInFront(rect, plane)) return std::nullopt;
-  return measure(rect, plane, origin, count, mean_depth);
+  const NodePlane plane = pyramid_.regress(node);
+  if (!isInFront(node, plane)) return std::nullopt;
+  return measure(rect, toVector(plane), origin, count, mean_depth);
 }
 
-TileFit TileFitter::measure(const QuadtreeNode& node) const {
+TileFit TileFitter::sample(const QuadtreeNode& node) const {
   TileFit fit;
-  fit.plane = pyramid_.regress(node).cast<float>();
+  fit.plane = toVector(pyramid_.regress(node));
   fit.count = pyramid_.count(node);
-  const ResidualSums sums = pyramid_.residuals(pyramid_.grid().rect(node), fit.plane);
+  const ResidualSums sums = pyramid_.sampleResiduals(node, fit.plane);
   fit.depth_sum = sums.depth;
   fit.point_plane_sum = planeDistance(node, fit.plane) * sums.relative;
   return fit;
 }
 
 TileFit TileFitter::estimate(const QuadtreeNode& node) const {
-  return estimate(node, pyramid_.regress(node).cast<float>());
+  return estimate(node, pyramid_.regress(node));
 }
 
-TileFit TileFitter::estimate(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
+TileFit TileFitter::estimate(const QuadtreeNode& node, const NodePlane& plane) const {
   TileFit fit;
-  fit.plane = plane;
+  fit.plane = toVector(plane);
   fit.count = pyramid_.count(node);
   const float depth = 1.0F / pyramid_.meanInverseDepth(node);
-  const float error = kMeanOverRms * std::sqrt(pyramid_.meanSquare(node, fit.plane)) * depth;
+  const float error = kMeanOverRms * std::abs(plane.rms) * depth;
   fit.depth_sum = fit.count * error * depth;
   fit.point_plane_sum = fit.count * error * planeDistance(node, fit.plane);
   return fit;
@@ -61,13 +76,26 @@ TileFit TileFitter::estimate(const QuadtreeNode& node, const Eigen::Vector3f& pl
 std::optional<float> TileFitter::distortion(const QuadtreeNode& node) const {
   const int count = pyramid_.count(node);
   if (count == 0 || count < options_.min_fill * pyramid_.area(node)) return std::nullopt;
-  const TileRect rect = pyramid_.grid().rect(node);
-  if (options_.corner_check != CornerCheck::kNone && !findCorners(rect)) return std::nullopt;
-  const Eigen::Vector3f plane = pyramid_.regress(node).cast<float>();
-  if (!isInFront(rect, plane)) return std::nullopt;
-  const TileFit fit = estimate(node, plane);
-  const double sum = options_.along_ray_test ? fit.depth_sum : fit.point_plane_sum;
-  return static_cast<float>(sum) / allowedError(1.0F / pyramid_.meanInverseDepth(node));
+  if (!hasDepthAtCorners(node)) return std::nullopt;
+  const NodePlane plane = pyramid_.regress(node);
+  if (!isInFront(node, plane)) return std::nullopt;
+  const float depth = 1.0F / pyramid_.meanInverseDepth(node);
+  const float error = kMeanOverRms * std::abs(plane.rms) * depth;
+  const float scale = options_.along_ray_test ? depth : planeDistance(node, toVector(plane));
+  return static_cast<float>(count) * error * scale / allowedError(depth);
+}
+
+void TileFitter::distortions(int level, std::vector<float>& result) const {
+  const auto nodes = static_cast<std::size_t>(pyramid_.grid().columns(level)) *
+                     static_cast<std::size_t>(pyramid_.grid().rows(level));
+  if (!options_.along_ray_test) {
+    result.assign(nodes, -1.0F);
+    return;
+  }
+  result.resize(nodes);
+  const DistortionRule rule{kMeanOverRms / static_cast<float>(options_.tolerance),
+                            2 - depthPower(options_.acceptance)};
+  pyramid_.kernels().weigh(pyramid_.rows(level), rule, nodes, result.data());
 }
 
 float TileFitter::planeDistance(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
@@ -75,41 +103,56 @@ float TileFitter::planeDistance(const QuadtreeNode& node, const Eigen::Vector3f&
   return 1.0F / Eigen::Vector3f(plane.x(), plane.y(), gamma).norm();
 }
 
-std::optional<TileFitter::Corners> TileFitter::findCorners(const TileRect& rect) const {
-  const bool exact = options_.corner_check == CornerCheck::kExact;
-  const int window = exact ? 1 : std::min(4, (std::min(rect.width, rect.height) + 1) / 2);
-  const int right = rect.x + rect.width - 1;
-  const int bottom = rect.y + rect.height - 1;
-  const auto find = [&](int x, int y, int step_x, int step_y, Corner& corner) {
-    corner = findCorner(x, y, step_x, step_y, window);
-    return corner.q != 0.0F;
-  };
-  Corners corners;
-  const bool found =
-      find(rect.x, rect.y, 1, 1, corners[0]) && find(right, rect.y, -1, 1, corners[1]) &&
-      find(rect.x, bottom, 1, -1, corners[2]) && find(right, bottom, -1, -1, corners[3]);
-  if (!found) return std::nullopt;
+int TileFitter::cornerWindow(const TileRect& rect) const {
+  if (options_.corner_check == CornerCheck::kExact) return 1;
+  return std::min(4, (std::min(rect.width, rect.height) + 1) / 2);
+}
+
+bool TileFitter::hasDepthAtCorners(const QuadtreeNode& node) const {
+  if (options_.corner_check == CornerCheck::kNone) return true;
+  const TileRect rect = pyramid_.grid().rect(node);
+  const std::optional<bool> known = pyramid_.hasDepthAtCorners(node, cornerWindow(rect));
+  return known ? *known : findCorners(rect).has_value();
+}
+
+std::optional<TileFitter::CornerPixels> TileFitter::findCorners(const TileRect& rect) const {
+  const int window = cornerWindow(rect);
+  const Eigen::Vector2i first(rect.x, rect.y);
+  const Eigen::Vector2i last(rect.x + rect.width - 1, rect.y + rect.height - 1);
+  CornerPixels corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const bool right = i % 2 == 1;
+    const bool lower = i / 2 == 1;
+    const Eigen::Vector2i corner(right ? last.x() : first.x(), lower ? last.y() : first.y());
+    const Eigen::Vector2i inwards(right ? -1 : 1, lower ? -1 : 1);
+    const std::optional<Eigen::Vector2i> pixel = nearestDepth(corner, inwards, window);
+    if (!pixel) return std::nullopt;
+    corners[i] = *pixel;
+  }
   return corners;
 }
 
-TileFitter::Corner TileFitter::findCorner(int x, int y, int step_x, int step_y, int window) const {
-  const float corner = pyramid_.inverseDepth(x, y);
-  if (corner != 0.0F) {
-    const Eigen::Vector2f tangents = pyramid_.tangents(x, y);
-    return {tangents.x(), tangents.y(), corner};
-  }
+std::optional<Eigen::Vector2i> TileFitter::nearestDepth(const Eigen::Vector2i& corner,
+                                                        const Eigen::Vector2i& inwards,
+                                                        int window) const {
   // Diagonals inwards from the corner: the nearest valid pixel comes first.
-  for (int ring = 1; ring <= 2 * (window - 1); ++ring) {
+  for (int ring = 0; ring <= 2 * (window - 1); ++ring) {
     for (int i = std::max(0, ring - window + 1); i <= std::min(ring, window - 1); ++i) {
-      const int px = x + i * step_x;
-      const int py = y + (ring - i) * step_y;
-      const float q = pyramid_.inverseDepth(px, py);
-      if (q == 0.0F) continue;
-      const Eigen::Vector2f tangents = pyramid_.tangents(px, py);
-      return {tangents.x(), tangents.y(), q};
+      const Eigen::Vector2i pixel(corner.x() + i * inwards.x(),
+                                  corner.y() + (ring - i) * inwards.y());
+      if (pyramid_.inverseDepth(pixel.x(), pixel.y()) != 0.0F) return pixel;
     }
   }
-  return {};
+  return std::nullopt;
+}
+
+TileFitter::Corners TileFitter::cornersAt(const CornerPixels& pixels) const {
+  Corners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2f tangents = pyramid_.tangents(pixels[i].x(), pixels[i].y());
+    corners[i] = {tangents.x(), tangents.y(), pyramid_.inverseDepth(pixels[i].x(), pixels[i].y())};
+  }
+  return corners;
 }
 
 bool TileFitter::isPlanar(const Corners& c, const Eigen::Vector2f& origin, float allowed) const {
@@ -127,29 +170,23 @@ bool TileFitter::isPlanar(const Corners& c, const Eigen::Vector2f& origin, float
   return distance <= static_cast<float>(options_.planarity_factor) * allowed;
 }
 
-bool TileFitter::isInFront(const TileRect& rect, const Eigen::Vector3f& plane) const {
-  const int right = rect.x + rect.width - 1;
-  const int bottom = rect.y + rect.height - 1;
+bool TileFitter::isInFront(const QuadtreeNode& node, const NodePlane& plane) const {
+  if (!std::signbit(plane.rms)) return true;
+  const TileRect rect = pyramid_.grid().rect(node);
+  const Eigen::Vector3f vector = toVector(plane);
   float nearest = std::numeric_limits<float>::infinity();
-  for (const int y : {rect.y, bottom}) {
-    for (const int x : {rect.x, right}) {
-      nearest = std::min(nearest, plane.head<2>().dot(pyramid_.tangents(x, y)) + plane.z());
+  for (const int y : {rect.y, rect.y + rect.height - 1}) {
+    for (const int x : {rect.x, rect.x + rect.width - 1}) {
+      nearest = std::min(nearest, vector.dot(pyramid_.tangents(x, y).homogeneous()));
     }
   }
-  return nearest >= kMinInverseDepth;
+  return nearest >= kMinPlaneInverseDepth;
 }
 
 float TileFitter::allowedError(float depth) const {
-  const auto tolerance = static_cast<float>(options_.tolerance);
-  switch (options_.acceptance) {
-    case AcceptanceRule::kFixed:
-      return tolerance;
-    case AcceptanceRule::kLinearInDepth:
-      return tolerance * depth;
-    case AcceptanceRule::kNoiseScaled:
-      break;
-  }
-  return tolerance * depth * depth;
+  auto allowed = static_cast<float>(options_.tolerance);
+  for (int power = 0; power < depthPower(options_.acceptance); ++power) allowed *= depth;
+  return allowed;
 }
 
 std::optional<TileFit> TileFitter::measure(const TileRect& rect, const Eigen::Vector3f& plane,

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "planecloud_slam/plane_fit/moment_pyramid.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter_options.h"
@@ -29,8 +30,8 @@ class TileFitter {
 
   /// The node's plane; empty when the node has to be subdivided.
   [[nodiscard]] std::optional<TileFit> fit(const QuadtreeNode& node) const;
-  /// The node's plane and its error, summed over the pixels; for a node with depth.
-  [[nodiscard]] TileFit measure(const QuadtreeNode& node) const;
+  /// The node's plane and its error, from every fourth row of pixels; for a node with depth.
+  [[nodiscard]] TileFit sample(const QuadtreeNode& node) const;
   /// The same without a look at the pixels: the moments know the mean square of the residuals, and
   /// noise has a mean of 0.8 of its root.
   [[nodiscard]] TileFit estimate(const QuadtreeNode& node) const;
@@ -38,6 +39,9 @@ class TileFitter {
   /// `along_ray_test`), summed over the node's pixels and in units of the tolerance. Empty when the
   /// node cannot be a tile: too little depth, or a plane that is not in front of the camera.
   [[nodiscard]] std::optional<float> distortion(const QuadtreeNode& node) const;
+  /// The same for all nodes of a level, row-major, at once; negative where `distortion` has to be
+  /// asked: for nodes with holes, planes far off and without `along_ray_test`.
+  void distortions(int level, std::vector<float>& result) const;
 
  private:
   /// A pixel with depth: tangents about the tile's origin, inverse depth.
@@ -46,19 +50,27 @@ class TileFitter {
     float v = 0.0F;
     float q = 0.0F;
   };
-  using Corners = std::array<Corner, 4>;  // upper left, upper right, lower left, lower right
+  // Upper left, upper right, lower left, lower right.
+  using Corners = std::array<Corner, 4>;
+  using CornerPixels = std::array<Eigen::Vector2i, 4>;
 
-  [[nodiscard]] std::optional<Corners> findCorners(const TileRect& rect) const;
-  [[nodiscard]] Corner findCorner(int x, int y, int step_x, int step_y, int window) const;
+  /// Pixels along both sides of a corner that `CornerCheck` looks at.
+  [[nodiscard]] int cornerWindow(const TileRect& rect) const;
+  [[nodiscard]] bool hasDepthAtCorners(const QuadtreeNode& node) const;
+  /// Pixels with depth near the corners; empty where one has none.
+  [[nodiscard]] std::optional<CornerPixels> findCorners(const TileRect& rect) const;
+  [[nodiscard]] std::optional<Eigen::Vector2i> nearestDepth(const Eigen::Vector2i& corner,
+                                                            const Eigen::Vector2i& inwards,
+                                                            int window) const;
+  [[nodiscard]] Corners cornersAt(const CornerPixels& pixels) const;
   [[nodiscard]] bool isPlanar(const Corners& corners, const Eigen::Vector2f& origin,
                               float allowed) const;
-  [[nodiscard]] bool isInFront(const TileRect& rect, const Eigen::Vector3f& plane) const;
+  [[nodiscard]] bool isInFront(const QuadtreeNode& node, const NodePlane& plane) const;
   [[nodiscard]] std::optional<TileFit> measure(const TileRect& rect, const Eigen::Vector3f& plane,
                                                const Eigen::Vector2f& origin, double count,
                                                float mean_depth) const;
   [[nodiscard]] float allowedError(float depth) const;
-  /// `estimate` with the node's regression.
-  [[nodiscard]] TileFit estimate(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
+  [[nodiscard]] TileFit estimate(const QuadtreeNode& node, const NodePlane& plane) const;
   /// Distance of a node's plane from the origin [m].
   [[nodiscard]] float planeDistance(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
 

@@ -15,6 +15,28 @@ struct TangentRows {
   std::ptrdiff_t stride = 0;  ///< [floats], of the inverse depth as well
 };
 
+/// Sums of the tangents over some pixels of a node.
+struct TangentSums {
+  float u = 0.0F, v = 0.0F, uu = 0.0F, uv = 0.0F, vv = 0.0F;
+
+  TangentSums& operator+=(const TangentSums& other) {
+    u += other.u;
+    v += other.v;
+    uu += other.uu;
+    uv += other.uv;
+    vv += other.vv;
+    return *this;
+  }
+};
+
+/// The pixels of a rectangle.
+struct PixelBlock {
+  const float* inverse_depth = nullptr;  ///< [1/m], 0: none
+  TangentRows tangents;
+  int width = 0;
+  int rows = 0;
+};
+
 /// Sums over the rows of a strip for each pixel column.
 struct ColumnSums {
   float* n = nullptr;
@@ -51,12 +73,49 @@ struct alignas(16) DepthSums {
   }
 };
 
+/// Planes are only kept where their inverse depth is at least this inside the tile [1/m]: 64 m.
+inline constexpr float kMinPlaneInverseDepth = 1.0F / 64.0F;
+
+/// What the regression of nodes that have no holes takes from the camera, an array for each.
+struct FullNodeRows {
+  const float* inverse_n = nullptr;  ///< 1 / pixels, 0: no pixels
+  const float* mean_u = nullptr;
+  const float* mean_v = nullptr;
+  const float* reach_u = nullptr;  ///< no pixel's u is farther from the mean
+  const float* reach_v = nullptr;
+  const float* inverse_uu = nullptr;  ///< of the centred scatter of (u, v)
+  const float* inverse_uv = nullptr;
+  const float* inverse_vv = nullptr;
+};
+
+/// A node's regression q = alpha u + beta v + gamma [1/m].
+struct alignas(16) NodePlane {
+  float alpha = 0.0F;
+  float beta = 0.0F;
+  float gamma = 0.0F;
+  /// Root mean square of the residuals [1/m], with a minus where the plane may be farther inside
+  /// the node than `kMinPlaneInverseDepth` allows.
+  float rms = 0.0F;
+};
+
+/// Nodes of one level: pixels, pixels with depth, sums over them and regression.
+struct NodeRows {
+  const float* full = nullptr;
+  const float* counts = nullptr;
+  const DepthSums* sums = nullptr;
+  const NodePlane* planes = nullptr;
+};
+
+/// How the residuals of a node's regression weigh: the sum over its pixels of factor * rms *
+/// z^power, z its mean depth.
+struct DistortionRule {
+  float factor = 0.0F;
+  int depth_power = 0;  ///< 0, 1 or 2
+};
+
 /// A plane q = alpha u + beta v + gamma against the pixels of a rectangle.
 struct ResidualQuery {
-  const float* inverse_depth = nullptr;
-  TangentRows tangents;
-  int width = 0;
-  int rows = 0;
+  PixelBlock pixels;
   float alpha = 0.0F;
   float beta = 0.0F;
   float gamma = 0.0F;
@@ -77,6 +136,15 @@ struct TileKernels {
   /// Adds up groups of `cell_width` columns: `cells` sums and counts.
   void (*sum_cells)(const ColumnSums& columns, int cell_width, int cells, DepthSums* sums,
                     float* counts);
+  /// Over the pixels with depth.
+  TangentSums (*sum_tangents)(const PixelBlock& pixels);
+  /// Regression of `count` nodes as if they had no holes.
+  void (*regress)(const DepthSums* sums, const FullNodeRows& nodes, std::size_t count,
+                  NodePlane* planes);
+  /// Distortion of `count` nodes that have depth in every pixel and a plane that is in front;
+  /// negative for the others.
+  void (*weigh)(const NodeRows& nodes, const DistortionRule& rule, std::size_t count,
+                float* distortions);
   ResidualSums (*residuals)(const ResidualQuery& query);
 };
 

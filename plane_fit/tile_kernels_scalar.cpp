@@ -16,6 +16,13 @@ const TileKernels& scalarTileKernels() {
       [](const ColumnSums& columns, int cell_width, int cells, DepthSums* sums, float* counts) {
         scalar::sumCells(columns, cell_width, 0, cells, sums, counts);
       },
+      &scalar::sumTangents,
+      [](const DepthSums* sums, const FullNodeRows& nodes, std::size_t count, NodePlane* planes) {
+        scalar::regress(sums, nodes, 0, count, planes);
+      },
+      [](const NodeRows& nodes, const DistortionRule& rule, std::size_t count, float* distortions) {
+        scalar::weigh(nodes, rule, 0, count, distortions);
+      },
       &scalar::residuals,
   };
   return kernels;

@@ -89,6 +89,131 @@ void sumCells(const ColumnSums& columns, int cell_width, int cells, DepthSums* s
   scalar::sumCells(columns, cell_width, cell, cells, sums, counts);
 }
 
+#if HWY_TARGET != HWY_SCALAR  // one lane has no halves
+/// sum of q^2 - (sum of q)^2 / n, a small difference of large numbers: in double.
+template <class D>
+hn::Vec<D> centredSquares(D d, hn::Vec<D> q, hn::Vec<D> qq, hn::Vec<D> inverse_n) {
+  const hn::RepartitionToWide<D> wide;
+  const hn::Half<D> half;
+  const auto centre = [&](auto q_half, auto qq_half, auto inverse_half) {
+    const auto wide_q = hn::PromoteTo(wide, q_half);
+    const auto mean = hn::Mul(wide_q, hn::PromoteTo(wide, inverse_half));
+    return hn::DemoteTo(half, hn::NegMulAdd(mean, wide_q, hn::PromoteTo(wide, qq_half)));
+  };
+  const auto lower = centre(hn::LowerHalf(q), hn::LowerHalf(qq), hn::LowerHalf(inverse_n));
+  const auto upper =
+      centre(hn::UpperHalf(half, q), hn::UpperHalf(half, qq), hn::UpperHalf(half, inverse_n));
+  return hn::Combine(d, upper, lower);
+}
+
+/// How many of the nodes were regressed: whole vectors.
+std::size_t regressVectors(const DepthSums* sums, const FullNodeRows& nodes, std::size_t count,
+                           NodePlane* planes) {
+  const hn::ScalableTag<float> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto load = [&](const float* values) { return hn::LoadU(d, values); };
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::Vec<decltype(d)> q, sum_qu, sum_qv, qq;
+    hn::LoadInterleaved4(d, &sums[i].q, q, sum_qu, sum_qv, qq);
+    const auto inverse_n = load(nodes.inverse_n + i);
+    const auto mean_u = load(nodes.mean_u + i);
+    const auto mean_v = load(nodes.mean_v + i);
+    const auto inverse_uv = load(nodes.inverse_uv + i);
+    const auto mean = hn::Mul(q, inverse_n);
+    const auto qu = hn::NegMulAdd(mean_u, q, sum_qu);
+    const auto qv = hn::NegMulAdd(mean_v, q, sum_qv);
+    const auto alpha = hn::MulAdd(load(nodes.inverse_uu + i), qu, hn::Mul(inverse_uv, qv));
+    const auto beta = hn::MulAdd(inverse_uv, qu, hn::Mul(load(nodes.inverse_vv + i), qv));
+    auto squares = centredSquares(d, q, qq, inverse_n);
+    squares = hn::NegMulAdd(alpha, qu, hn::NegMulAdd(beta, qv, squares));
+    const auto reach = hn::MulAdd(hn::Abs(alpha), load(nodes.reach_u + i),
+                                  hn::Mul(hn::Abs(beta), load(nodes.reach_v + i)));
+    const auto gamma = hn::NegMulAdd(alpha, mean_u, hn::NegMulAdd(beta, mean_v, mean));
+    const auto rms = hn::Sqrt(hn::Max(hn::Zero(d), hn::Mul(squares, inverse_n)));
+    const auto in_front = hn::Ge(hn::Sub(mean, reach), hn::Set(d, kMinPlaneInverseDepth));
+    hn::StoreInterleaved4(alpha, beta, gamma, hn::IfThenElse(in_front, rms, hn::Neg(rms)), d,
+                          &planes[i].alpha);
+  }
+  return i;
+}
+#else
+std::size_t regressVectors(const DepthSums*, const FullNodeRows&, std::size_t, NodePlane*) {
+  return 0;
+}
+#endif
+
+void regress(const DepthSums* sums, const FullNodeRows& nodes, std::size_t count,
+             NodePlane* planes) {
+  scalar::regress(sums, nodes, regressVectors(sums, nodes, count, planes), count, planes);
+}
+
+void weigh(const NodeRows& nodes, const DistortionRule& rule, std::size_t count,
+           float* distortions) {
+  const hn::ScalableTag<float> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto one = hn::Set(d, 1.0F);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::Vec<decltype(d)> alpha, beta, gamma, rms, q, qu, qv, qq;
+    hn::LoadInterleaved4(d, &nodes.planes[i].alpha, alpha, beta, gamma, rms);
+    hn::LoadInterleaved4(d, &nodes.sums[i].q, q, qu, qv, qq);
+    const auto n = hn::LoadU(d, nodes.counts + i);
+    const auto front = hn::Eq(hn::CopySign(one, rms), one);
+    const auto known =
+        hn::And(front, hn::And(hn::Gt(n, hn::Zero(d)), hn::Eq(n, hn::LoadU(d, nodes.full + i))));
+    const auto depth = hn::Div(n, hn::IfThenElse(known, q, one));
+    auto scale = hn::Mul(hn::Set(d, rule.factor), n);
+    for (int power = 0; power < rule.depth_power; ++power) scale = hn::Mul(scale, depth);
+    hn::StoreU(hn::IfThenElse(known, hn::Mul(scale, rms), hn::Set(d, -1.0F)), d, distortions + i);
+  }
+  scalar::weigh(nodes, rule, i, count, distortions);
+}
+
+/// A row's inverse depths from pixel `x` on, `left` of them. Rows may be read past their block:
+/// those lanes, like pixels without depth, are 0.
+template <bool kFills, class D>
+hn::Vec<D> loadPixels(D d, const float* row, int left) {
+  const auto q = hn::LoadU(d, row);
+  if constexpr (kFills) return q;
+  return hn::IfThenElseZero(hn::FirstN(d, static_cast<std::size_t>(left)), q);
+}
+
+/// `kFills`: rows are whole vectors long.
+template <bool kFills, class D>
+TangentSums sumTangentsBy(D d, const PixelBlock& pixels) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto zero = hn::Zero(d);
+  auto sum_u = zero, sum_v = zero, sum_uu = zero, sum_uv = zero, sum_vv = zero;
+  for (int y = 0; y < pixels.rows; ++y) {
+    for (int x = 0; x < pixels.width; x += lanes) {
+      const std::ptrdiff_t at = y * pixels.tangents.stride + x;
+      const auto q = loadPixels<kFills>(d, pixels.inverse_depth + at, pixels.width - x);
+      const auto valid = hn::Gt(q, zero);
+      const auto u = hn::IfThenElseZero(valid, hn::LoadU(d, pixels.tangents.u + at));
+      const auto v = hn::IfThenElseZero(valid, hn::LoadU(d, pixels.tangents.v + at));
+      sum_u = hn::Add(sum_u, u);
+      sum_v = hn::Add(sum_v, v);
+      sum_uu = hn::MulAdd(u, u, sum_uu);
+      sum_uv = hn::MulAdd(u, v, sum_uv);
+      sum_vv = hn::MulAdd(v, v, sum_vv);
+    }
+  }
+  const auto sum = [&](auto values) { return hn::GetLane(hn::SumOfLanes(d, values)); };
+  return {sum(sum_u), sum(sum_v), sum(sum_uu), sum(sum_uv), sum(sum_vv)};
+}
+
+template <class D>
+TangentSums sumTangentsWith(D d, const PixelBlock& pixels) {
+  const bool fills = pixels.width % static_cast<int>(hn::Lanes(d)) == 0;
+  return fills ? sumTangentsBy<true>(d, pixels) : sumTangentsBy<false>(d, pixels);
+}
+
+TangentSums sumTangents(const PixelBlock& pixels) {
+  if (pixels.width <= 4) return sumTangentsWith(hn::CappedTag<float, 4>(), pixels);
+  return sumTangentsWith(hn::CappedTag<float, 8>(), pixels);
+}
+
 /// `kFills`: rows are whole vectors long.
 template <bool kFills, class D>
 ResidualSums residualsBy(D d, const ResidualQuery& query) {
@@ -98,16 +223,13 @@ ResidualSums residualsBy(D d, const ResidualQuery& query) {
   const auto gamma = hn::Set(d, query.gamma);
   const auto zero = hn::Zero(d);
   auto inverse_depth = zero, relative = zero, depth = zero;
-  for (int y = 0; y < query.rows; ++y) {
-    for (int x = 0; x < query.width; x += lanes) {
-      const std::ptrdiff_t at = y * query.tangents.stride + x;
-      auto q = hn::LoadU(d, query.inverse_depth + at);
-      if constexpr (!kFills) {
-        // Rows may be read past the tile: those lanes, like pixels without depth, add nothing.
-        q = hn::IfThenElseZero(hn::FirstN(d, static_cast<std::size_t>(query.width - x)), q);
-      }
-      const auto u = hn::LoadU(d, query.tangents.u + at);
-      const auto v = hn::LoadU(d, query.tangents.v + at);
+  const PixelBlock& pixels = query.pixels;
+  for (int y = 0; y < pixels.rows; ++y) {
+    for (int x = 0; x < pixels.width; x += lanes) {
+      const std::ptrdiff_t at = y * pixels.tangents.stride + x;
+      const auto q = loadPixels<kFills>(d, pixels.inverse_depth + at, pixels.width - x);
+      const auto u = hn::LoadU(d, pixels.tangents.u + at);
+      const auto v = hn::LoadU(d, pixels.tangents.v + at);
       const auto plane = hn::MulAdd(alpha, u, hn::MulAdd(beta, v, gamma));
       const auto valid = hn::Gt(q, zero);
       const auto error = hn::IfThenElseZero(valid, hn::Abs(hn::Sub(q, plane)));
@@ -127,13 +249,13 @@ ResidualSums residualsBy(D d, const ResidualQuery& query) {
 
 template <class D>
 ResidualSums residualsWith(D d, const ResidualQuery& query) {
-  const bool fills = query.width % static_cast<int>(hn::Lanes(d)) == 0;
+  const bool fills = query.pixels.width % static_cast<int>(hn::Lanes(d)) == 0;
   return fills ? residualsBy<true>(d, query) : residualsBy<false>(d, query);
 }
 
 ResidualSums residuals(const ResidualQuery& query) {
-  if (query.width <= 4) return residualsWith(hn::CappedTag<float, 4>(), query);
-  if (query.width <= 8) return residualsWith(hn::CappedTag<float, 8>(), query);
+  if (query.pixels.width <= 4) return residualsWith(hn::CappedTag<float, 4>(), query);
+  if (query.pixels.width <= 8) return residualsWith(hn::CappedTag<float, 8>(), query);
   return residualsWith(hn::CappedTag<float, 16>(), query);
 }
 
@@ -148,15 +270,19 @@ namespace planecloud {
 HWY_EXPORT(sumColumnsF32);
 HWY_EXPORT(sumColumnsU16);
 HWY_EXPORT(sumCells);
+HWY_EXPORT(sumTangents);
+HWY_EXPORT(regress);
+HWY_EXPORT(weigh);
 HWY_EXPORT(residuals);
 HWY_EXPORT(targetName);
 
 const TileKernels& vectorTileKernels() {
   static const TileKernels kernels = [] {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return TileKernels{HWY_DYNAMIC_DISPATCH(targetName)(), &HWY_DYNAMIC_DISPATCH(sumColumnsF32),
+    return TileKernels{HWY_DYNAMIC_DISPATCH(targetName)(),   &HWY_DYNAMIC_DISPATCH(sumColumnsF32),
                        &HWY_DYNAMIC_DISPATCH(sumColumnsU16), &HWY_DYNAMIC_DISPATCH(sumCells),
-                       &HWY_DYNAMIC_DISPATCH(residuals)};
+                       &HWY_DYNAMIC_DISPATCH(sumTangents),   &HWY_DYNAMIC_DISPATCH(regress),
+                       &HWY_DYNAMIC_DISPATCH(weigh),         &HWY_DYNAMIC_DISPATCH(residuals)};
   }();
   return kernels;
 }

@@ -28,15 +28,26 @@ TreePruner::TreePruner(const MomentPyramid& pyramid, const TileFitter& fitter, d
   levels_.resize(static_cast<std::size_t>(grid.levels()));
   queues_.resize(levels_.size());
   for (int i = 0; i < grid.levels(); ++i) {
-    level(i).resize(static_cast<std::size_t>(grid.columns(i)) *
-                    static_cast<std::size_t>(grid.rows(i)));
+    level(i).columns = grid.columns(i);
+    level(i).nodes.resize(static_cast<std::size_t>(grid.columns(i)) *
+                          static_cast<std::size_t>(grid.rows(i)));
   }
 }
 
-std::size_t TreePruner::index(const QuadtreeNode& node) const {
-  return static_cast<std::size_t>(node.row) *
-             static_cast<std::size_t>(pyramid_.grid().columns(node.level)) +
-         static_cast<std::size_t>(node.column);
+template <typename Visit>
+void TreePruner::forChildren(const QuadtreeNode& node, Visit&& visit) const {
+  if (node.level + 1 == static_cast<int>(levels_.size())) return;
+  const float* counts = pyramid_.rows(node.level + 1).counts;
+  const auto columns =
+      static_cast<std::size_t>(levels_[static_cast<std::size_t>(node.level) + 1].columns);
+  const int column = 2 * node.column;
+  const int row = 2 * node.row;
+  const std::size_t first =
+      static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
+  if (counts[first] > 0.0F) visit(column, row, first);
+  if (counts[first + 1] > 0.0F) visit(column + 1, row, first + 1);
+  if (counts[first + columns] > 0.0F) visit(column, row + 1, first + columns);
+  if (counts[first + columns + 1] > 0.0F) visit(column + 1, row + 1, first + columns + 1);
 }
 
 const std::vector<QuadtreeNode>& TreePruner::choose(const std::function<bool()>& give_up) {
@@ -57,6 +68,7 @@ const std::vector<QuadtreeNode>& TreePruner::choose(const std::function<bool()>&
 
 bool TreePruner::weighLevel(std::size_t i, const std::function<bool()>& give_up) {
   std::vector<QuadtreeNode>& queue = queues_[i];
+  if (!queue.empty()) fitter_.distortions(static_cast<int>(i), levels_[i].distortions);
   for (std::size_t j = 0; j < queue.size(); ++j) {
     if (j % kNodesAtOnce == 0 && give_up && give_up()) {
       dropFrom(queue, j);
@@ -72,61 +84,53 @@ bool TreePruner::weighLevel(std::size_t i, const std::function<bool()>& give_up)
 void TreePruner::dropFrom(std::vector<QuadtreeNode>& queue, std::size_t first) {
   for (std::size_t j = 0; j < queue.size(); ++j) {
     const QuadtreeNode node = queue[j];
-    level(node.level)[index(node)].open = false;
+    at(node).open = false;
     if (j < first) continue;
     if (node.level > 0) {
       const QuadtreeNode parent{node.level - 1, node.column / 2, node.row / 2};
-      level(parent.level)[index(parent)].open = false;
+      at(parent).open = false;
     }
   }
   queue.resize(first);
 }
 
 TreePruner::Node& TreePruner::weigh(const QuadtreeNode& node) {
-  const auto count = static_cast<float>(pyramid_.count(node));
-  Node& state = level(node.level)[index(node)];
+  const std::size_t i = index(node);
+  const float count = pyramid_.rows(node.level).counts[i];
+  Node& state = level(node.level).nodes[i];
   state = {kUncoveredError * count + lambda_ * kNothingBits, Choice::kNothing, true};
-  const std::optional<float> distortion = fitter_.distortion(node);
-  if (!distortion || *distortion > kMaxError * count) return state;
-  const double cost = *distortion + lambda_ * kTileBits;
+  float distortion = level(node.level).distortions[i];
+  if (distortion < 0.0F) {
+    const std::optional<float> asked = fitter_.distortion(node);
+    if (!asked) return state;
+    distortion = *asked;
+  }
+  if (distortion > kMaxError * count) return state;
+  const double cost = distortion + lambda_ * kTileBits;
   // A split makes a tile of each child with depth, or costs far more: is that worth a look?
-  const double least = lambda_ * (kSplitBits + kTileBits * countChildren(node));
+  int children = 0;
+  forChildren(node, [&](int, int, std::size_t) { ++children; });
+  const double least = lambda_ * (kSplitBits + kTileBits * children);
   state = {cost, Choice::kTile, least < cost};
   return state;
 }
 
-int TreePruner::countChildren(const QuadtreeNode& node) const {
-  if (node.level + 1 == pyramid_.grid().levels()) return 0;
-  int children = 0;
-  for (const int row : {2 * node.row, 2 * node.row + 1}) {
-    for (const int column : {2 * node.column, 2 * node.column + 1}) {
-      children += pyramid_.count({node.level + 1, column, row}) > 0 ? 1 : 0;
-    }
-  }
-  return children;
-}
-
 void TreePruner::pushChildren(const QuadtreeNode& node, std::vector<QuadtreeNode>& queue) const {
-  for (const int row : {2 * node.row, 2 * node.row + 1}) {
-    for (const int column : {2 * node.column, 2 * node.column + 1}) {
-      const QuadtreeNode child{node.level + 1, column, row};
-      if (pyramid_.count(child) > 0) queue.push_back(child);
-    }
-  }
+  forChildren(node, [&](int column, int row, std::size_t) {
+    // Field by field: a node made whole and copied at once waits for its own stores.
+    QuadtreeNode& child = queue.emplace_back();
+    child.level = node.level + 1;
+    child.column = column;
+    child.row = row;
+  });
 }
 
 void TreePruner::merge(const QuadtreeNode& node) {
-  Node& state = level(node.level)[index(node)];
+  Node& state = at(node);
   if (!state.open) return;
-  const std::vector<Node>& children = level(node.level + 1);
+  const std::vector<Node>& children = level(node.level + 1).nodes;
   double cost = lambda_ * kSplitBits;
-  for (const int row : {2 * node.row, 2 * node.row + 1}) {
-    for (const int column : {2 * node.column, 2 * node.column + 1}) {
-      const QuadtreeNode child{node.level + 1, column, row};
-      if (pyramid_.count(child) == 0) continue;
-      cost += children[index(child)].cost;
-    }
-  }
+  forChildren(node, [&](int, int, std::size_t i) { cost += children[i].cost; });
   if (cost < state.cost) state = {cost, Choice::kSplit, true};
 }
 
@@ -136,7 +140,7 @@ void TreePruner::collect() {
   for (std::size_t i = 0; i < queues_.size(); ++i) {
     if (i + 1 < queues_.size()) queues_[i + 1].clear();
     for (const QuadtreeNode& node : queues_[i]) {
-      const Choice choice = level(node.level)[index(node)].choice;
+      const Choice choice = at(node).choice;
       if (choice == Choice::kTile) tiles_.push_back(node);
       if (choice == Choice::kSplit) pushChildren(node, queues_[i + 1]);
     }

@@ -32,15 +32,26 @@ class TreePruner {
     bool open = false;  ///< its children were weighed as well
   };
 
-  [[nodiscard]] std::vector<Node>& level(int i) { return levels_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] std::size_t index(const QuadtreeNode& node) const;
+  struct Level {
+    int columns = 0;
+    std::vector<Node> nodes;
+    std::vector<float> distortions;  // of nodes without holes
+  };
+
+  [[nodiscard]] Level& level(int i) { return levels_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] std::size_t index(const QuadtreeNode& node) const {
+    const Level& nodes = levels_[static_cast<std::size_t>(node.level)];
+    return static_cast<std::size_t>(node.row * nodes.columns + node.column);
+  }
+  [[nodiscard]] Node& at(const QuadtreeNode& node) { return level(node.level).nodes[index(node)]; }
+  /// Calls `visit(column, row, index)` for each child with depth.
+  template <typename Visit>
+  void forChildren(const QuadtreeNode& node, Visit&& visit) const;
   [[nodiscard]] bool weighLevel(std::size_t i, const std::function<bool()>& give_up);
   /// Time is up: the nodes from `first` on were not weighed, so their parents cannot split.
   void dropFrom(std::vector<QuadtreeNode>& queue, std::size_t first);
   /// Tile or nothing, and whether it is worth a look at the children.
   Node& weigh(const QuadtreeNode& node);
-  /// Children with depth.
-  [[nodiscard]] int countChildren(const QuadtreeNode& node) const;
   void pushChildren(const QuadtreeNode& node, std::vector<QuadtreeNode>& queue) const;
   /// Splits where the children together cost less.
   void merge(const QuadtreeNode& node);
@@ -49,7 +60,7 @@ class TreePruner {
   const MomentPyramid& pyramid_;
   const TileFitter& fitter_;
   double lambda_;
-  std::vector<std::vector<Node>> levels_;
+  std::vector<Level> levels_;
   std::vector<std::vector<QuadtreeNode>> queues_;  // nodes weighed on each level
   std::vector<QuadtreeNode> tiles_;
 };

@@ -43,6 +43,8 @@ TileMoments sumPixels(const MomentPyramid& pyramid, const TileRect& rect,
   return moments;
 }
 
+Eigen::Vector3f vectorOf(const NodePlane& plane) { return {plane.alpha, plane.beta, plane.gamma}; }
+
 void expectClose(const TileMoments& a, const TileMoments& b) {
   ASSERT_EQ(a.n, b.n);
   // Float sums of a few thousand terms, tangents within 0.1 of the origin.
@@ -75,7 +77,7 @@ TEST(MomentPyramid, EqualsTheSumsOverPixelsOnEveryLevel) {
           expectClose(pyramid.moments(node), expected);
           if (expected.n < 3.0) continue;
           // Compare planes where it matters: at the tile's own pixels.
-          const Eigen::Vector3d fit = pyramid.regress(node);
+          const Eigen::Vector3d fit = vectorOf(pyramid.regress(node)).cast<double>();
           const Eigen::Vector3d reference = regressInverseDepth(expected);
           const Eigen::Vector3d corner(pyramid.tangents(rect.x, rect.y).x(),
                                        pyramid.tangents(rect.x, rect.y).y(), 1.0);
@@ -104,6 +106,126 @@ TEST(MomentPyramid, ReadsBothDepthEncodingsAlike) {
     for (int column = 0; column < a.grid().columns(0); ++column) {
       expectClose(a.moments({0, column, row}), b.moments({0, column, row}));
     }
+  }
+}
+
+TEST(MomentPyramid, KnowsTheRootMeanSquareOfWhatIsLeft) {
+  const auto camera = std::make_shared<const Camera>(testCamera());
+  const Image<float> depth = noisyCorridor(*camera);
+  MomentPyramid pyramid(camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(pyramid.read(depth.view(), nullptr));
+  for (int level = 0; level < pyramid.grid().levels(); ++level) {
+    for (int row = 0; row < pyramid.grid().rows(level); ++row) {
+      for (int column = 0; column < pyramid.grid().columns(level); ++column) {
+        const QuadtreeNode node{level, column, row};
+        const int count = pyramid.count(node);
+        if (count < 4) continue;
+        const NodePlane plane = pyramid.regress(node);
+        const TileRect rect = pyramid.grid().rect(node);
+        double squares = 0.0;
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+          for (int x = rect.x; x < rect.x + rect.width; ++x) {
+            if (pyramid.inverseDepth(x, y) == 0.0F) continue;
+            const Eigen::Vector2f tangents = pyramid.tangents(x, y);
+            const double residual = double{pyramid.inverseDepth(x, y)} - plane.gamma -
+                                    plane.alpha * tangents.x() - plane.beta * tangents.y();
+            squares += residual * residual;
+          }
+        }
+        // Squares of q up to 1 1/m are summed in float; some 1e-7 of them are lost.
+        ASSERT_NEAR(plane.rms * plane.rms, squares / count, 4e-7 + 1e-3 * squares / count);
+      }
+    }
+  }
+}
+
+TEST(MomentPyramid, GuessesErrorsFromSomeRows) {
+  const auto camera = std::make_shared<const Camera>(testCamera());
+  const Image<float> depth = noisyCorridor(*camera);
+  MomentPyramid pyramid(camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(pyramid.read(depth.view(), nullptr));
+  ResidualSums all, some;
+  const int cells = pyramid.grid().levels() - 1;
+  for (int row = 0; row < pyramid.grid().rows(cells); ++row) {
+    for (int column = 0; column < pyramid.grid().columns(cells); ++column) {
+      const QuadtreeNode node{cells, column, row};
+      if (pyramid.count(node) == 0) continue;
+      const Eigen::Vector3f plane = vectorOf(pyramid.regress(node));
+      all.relative += pyramid.residuals(pyramid.grid().rect(node), plane).relative;
+      some.relative += pyramid.sampleResiduals(node, plane).relative;
+    }
+  }
+  EXPECT_NEAR(some.relative, all.relative, 0.02 * all.relative);  // 77,000 of 307,000 pixels
+}
+
+TEST(MomentPyramid, KnowsMostCornersWithoutALookAtPixels) {
+  const auto camera = std::make_shared<const Camera>(testCamera(641, 479));
+  const Image<float> depth = noisyCorridor(*camera);
+  MomentPyramid pyramid(camera, {64, 64, 4}, vectorTileKernels());
+  ASSERT_TRUE(pyramid.read(depth.view(), nullptr));
+  const auto seen = [&](int x0, int y0, int step_x, int step_y) {
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        if (pyramid.inverseDepth(x0 + x * step_x, y0 + y * step_y) != 0.0F) return true;
+      }
+    }
+    return false;
+  };
+  int known = 0;
+  int asked = 0;
+  for (int level = 0; level + 1 < pyramid.grid().levels(); ++level) {
+    for (int row = 0; row < pyramid.grid().rows(level); ++row) {
+      for (int column = 0; column < pyramid.grid().columns(level); ++column) {
+        const TileRect rect = pyramid.grid().rect({level, column, row});
+        if (rect.width < 4 || rect.height < 4) continue;
+        const int right = rect.x + rect.width - 1;
+        const int bottom = rect.y + rect.height - 1;
+        const bool corners = seen(rect.x, rect.y, 1, 1) && seen(right, rect.y, -1, 1) &&
+                             seen(rect.x, bottom, 1, -1) && seen(right, bottom, -1, -1);
+        const std::optional<bool> answer = pyramid.hasDepthAtCorners({level, column, row}, 4);
+        ++asked;
+        if (!answer) continue;
+        ++known;
+        ASSERT_EQ(*answer, corners);
+      }
+    }
+  }
+  EXPECT_GT(known, asked / 2);
+}
+
+template <typename Pixel>
+void expectKernelsAgree(const Case& c, const Image<Pixel>& depth) {
+  const auto camera = std::make_shared<const Camera>(testCamera(c.width, c.height));
+  MomentPyramid a(camera, c.layout, scalarTileKernels());
+  MomentPyramid b(camera, c.layout, vectorTileKernels());
+  ASSERT_TRUE(a.read(depth.view(), nullptr));
+  ASSERT_TRUE(b.read(depth.view(), nullptr));
+  for (int level = 0; level < a.grid().levels(); ++level) {
+    for (int row = 0; row < a.grid().rows(level); ++row) {
+      for (int column = 0; column < a.grid().columns(level); ++column) {
+        const QuadtreeNode node{level, column, row};
+        expectClose(a.moments(node), b.moments(node));
+        if (a.count(node) < 3) continue;
+        const TileRect rect = a.grid().rect(node);
+        const Eigen::Vector3f plane = vectorOf(a.regress(node));
+        const ResidualSums scalar = a.residuals(rect, plane);
+        const ResidualSums vector = b.residuals(rect, plane);
+        // Some float roundings of sums that grow with the number of pixels.
+        const double tolerance = 1e-5 * a.count(node);
+        ASSERT_NEAR(scalar.inverse_depth, vector.inverse_depth, tolerance);
+        ASSERT_NEAR(scalar.relative, vector.relative, tolerance + 1e-4 * scalar.relative);
+        ASSERT_NEAR(scalar.depth, vector.depth, tolerance + 1e-4 * scalar.depth);
+      }
+    }
+  }
+}
+
+TEST(MomentPyramid, ScalarAndVectorKernelsAgreeAtEveryNode) {
+  for (const Case& c : kCases) {
+    const Camera camera(testCamera(c.width, c.height));
+    const Image<float> depth = noisyCorridor(camera);
+    expectKernelsAgree(c, depth);
+    expectKernelsAgree(c, toMillimetres(depth));
   }
 }
 
@@ -136,7 +258,8 @@ TEST(MomentPyramid, ForgetsThePreviousImage) {
       const QuadtreeNode node{used.grid().levels() - 1, column, row};
       ASSERT_EQ(used.count(node), fresh.count(node));
       if (used.count(node) == 0) continue;
-      ASSERT_EQ(used.regress(node), fresh.regress(node));
+      ASSERT_EQ(vectorOf(used.regress(node)), vectorOf(fresh.regress(node)));
+      ASSERT_EQ(used.regress(node).rms, fresh.regress(node).rms);
     }
   }
 }

@@ -121,24 +121,98 @@ TEST(TileKernels, SumCellsAlike) {
   }
 }
 
+void expectSameTangentSums(const PixelBlock& pixels) {
+  const TangentSums a = scalarTileKernels().sum_tangents(pixels);
+  const TangentSums b = vectorTileKernels().sum_tangents(pixels);
+  const double tolerance = 1e-7 * pixels.width * pixels.rows;  // tangents up to 0.1
+  EXPECT_NEAR(a.u, b.u, tolerance);
+  EXPECT_NEAR(a.v, b.v, tolerance);
+  EXPECT_NEAR(a.uu, b.uu, tolerance);
+  EXPECT_NEAR(a.uv, b.uv, tolerance);
+  EXPECT_NEAR(a.vv, b.vv, tolerance);
+}
+
+/// Random nodes of 16 pixels, some with holes, some without pixels, some steep.
+struct RandomNodes {
+  static constexpr std::size_t kNodes = 101;
+  std::vector<float> tables[8];
+  std::vector<float> full, counts;
+  std::vector<DepthSums> sums;
+
+  RandomNodes() : full(kNodes), counts(kNodes), sums(kNodes) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+    for (std::vector<float>& table : tables) table.resize(kNodes);
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      if (i % 13 == 0) continue;
+      full[i] = 16.0F;
+      counts[i] = i % 5 == 0 ? 11.0F : 16.0F;
+      tables[0][i] = 1.0F / 16.0F;
+      tables[1][i] = 0.05F * uniform(random);
+      tables[2][i] = 0.05F * uniform(random);
+      tables[3][i] = tables[4][i] = 0.003F;
+      tables[5][i] = 15000.0F;
+      tables[6][i] = 200.0F * uniform(random);
+      tables[7][i] = 15000.0F;
+      const float q = 0.6F + 0.55F * uniform(random);
+      const float slope = i % 4 == 0 ? 200.0F : 1.0F;
+      sums[i].q = 16.0F * q;
+      sums[i].qu = tables[1][i] * sums[i].q + 7e-5F * slope * uniform(random);
+      sums[i].qv = tables[2][i] * sums[i].q + 7e-5F * slope * uniform(random);
+      sums[i].qq = 16.0F * q * q + 1.0F + 1e-3F * uniform(random);
+    }
+  }
+  [[nodiscard]] FullNodeRows rows() const {
+    return {tables[0].data(), tables[1].data(), tables[2].data(), tables[3].data(),
+            tables[4].data(), tables[5].data(), tables[6].data(), tables[7].data()};
+  }
+};
+
+TEST(TileKernels, RegressAndWeighNodesAlike) {
+  const RandomNodes nodes;
+  std::vector<NodePlane> a(RandomNodes::kNodes), b(RandomNodes::kNodes);
+  scalarTileKernels().regress(nodes.sums.data(), nodes.rows(), a.size(), a.data());
+  vectorTileKernels().regress(nodes.sums.data(), nodes.rows(), b.size(), b.data());
+  int behind = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    // Of sums of 16, centred: some float roundings times the inverse scatter.
+    EXPECT_NEAR(a[i].alpha, b[i].alpha, 1e-4 * std::abs(a[i].alpha) + 0.03);
+    EXPECT_NEAR(a[i].beta, b[i].beta, 1e-4 * std::abs(a[i].beta) + 0.03);
+    EXPECT_NEAR(a[i].gamma, b[i].gamma, 1e-4 * std::abs(a[i].gamma) + 0.003);
+    EXPECT_EQ(std::signbit(a[i].rms), std::signbit(b[i].rms));
+    EXPECT_NEAR(a[i].rms, b[i].rms, 1e-3);
+    behind += std::signbit(a[i].rms) ? 1 : 0;
+  }
+  EXPECT_GT(behind, 10);
+  EXPECT_LT(behind, 60);
+  for (const int power : {0, 1, 2}) {
+    std::vector<float> c(a.size()), d(a.size());
+    const NodeRows rows{nodes.full.data(), nodes.counts.data(), nodes.sums.data(), a.data()};
+    scalarTileKernels().weigh(rows, {0.7F, power}, c.size(), c.data());
+    vectorTileKernels().weigh(rows, {0.7F, power}, d.size(), d.data());
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      EXPECT_FLOAT_EQ(c[i], d[i]);
+      const bool whole = nodes.full[i] > 0.0F && nodes.counts[i] == nodes.full[i];
+      EXPECT_EQ(c[i] >= 0.0F, whole && !std::signbit(a[i].rms));
+    }
+  }
+}
+
 TEST(TileKernels, MeasureResidualsAlike) {
   Strip<float> strip = floatStrip();
   run(scalarTileKernels(), strip, kMaxWidth, kRows);
   for (const int width : {1, 2, 3, 4, 5, 7, 8, 9, 16, 17, 40, 64, 80}) {
     for (const int rows : {1, 3, 16}) {
-      const ResidualQuery query{strip.inverse_depth.data(),
-                                {strip.u.data(), strip.v.data(), kStride},
-                                width,
-                                rows,
-                                0.3F,
-                                -0.2F,
-                                0.5F};
+      const PixelBlock pixels{
+          strip.inverse_depth.data(), {strip.u.data(), strip.v.data(), kStride}, width, rows};
+      const ResidualQuery query{pixels, 0.3F, -0.2F, 0.5F};
+      expectSameTangentSums(pixels);
       const ResidualSums a = scalarTileKernels().residuals(query);
       const ResidualSums b = vectorTileKernels().residuals(query);
-      const auto pixels = static_cast<float>(width * rows);
-      EXPECT_NEAR(a.inverse_depth, b.inverse_depth, 1e-6 * pixels);
-      EXPECT_NEAR(a.relative, b.relative, 5e-6 * pixels);
-      EXPECT_NEAR(a.depth, b.depth, 1e-5 * pixels);
+      const auto area = static_cast<float>(width * rows);
+      EXPECT_NEAR(a.inverse_depth, b.inverse_depth, 1e-6 * area);
+      EXPECT_NEAR(a.relative, b.relative, 5e-6 * area);
+      EXPECT_NEAR(a.depth, b.depth, 1e-5 * area);
       if (width > 3) {
         EXPECT_GT(a.depth, 0.0F);
       }

@@ -53,6 +53,33 @@ TEST(TreePruner, MakesSmallerCloudsThatAreTruerThanTheSensor) {
             0.5 * trueError(scene.depth, scene));
 }
 
+TEST(TileFitter, WeighsAWholeLevelAsItWeighsNodes) {
+  const NoisyCorridor scene(4);
+  for (const AcceptanceRule rule :
+       {AcceptanceRule::kFixed, AcceptanceRule::kLinearInDepth, AcceptanceRule::kNoiseScaled}) {
+    QuadtreeFitterOptions options;
+    options.acceptance = rule;
+    MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels());
+    const TileFitter fitter(pyramid, options);
+    ASSERT_TRUE(pyramid.read(scene.depth.view(), nullptr));
+    int known = 0;
+    for (int level = 0; level < pyramid.grid().levels(); ++level) {
+      std::vector<float> distortions;
+      fitter.distortions(level, distortions);
+      const int columns = pyramid.grid().columns(level);
+      for (std::size_t i = 0; i < distortions.size(); ++i) {
+        if (distortions[i] < 0.0F) continue;
+        const int index = static_cast<int>(i);
+        const auto asked = fitter.distortion({level, index % columns, index / columns});
+        ASSERT_TRUE(asked.has_value());
+        ASSERT_NEAR(distortions[i], *asked, 1e-4F * *asked);
+        ++known;
+      }
+    }
+    EXPECT_GT(known, 15000);
+  }
+}
+
 TEST(TreePruner, SpendsFewerBytesTheMoreABitCosts) {
   const NoisyCorridor scene(2);
   std::size_t bytes = static_cast<std::size_t>(-1);
@@ -67,22 +94,25 @@ TEST(TreePruner, SpendsFewerBytesTheMoreABitCosts) {
   }
 }
 
-TEST(TreePruner, EstimatesTheErrorThatAPassOverThePixelsFinds) {
+TEST(TreePruner, EstimatesTheErrorThatALookAtThePixelsFinds) {
   const NoisyCorridor scene(3);
   MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels());
   ASSERT_TRUE(pyramid.read(scene.depth.view(), nullptr));
   const TileFitter fitter(pyramid, {});
   double estimated = 0.0;
+  double sampled = 0.0;
   double measured = 0.0;
   for (int row = 0; row < pyramid.grid().rows(2); ++row) {
     for (int column = 0; column < pyramid.grid().columns(2); ++column) {
       const QuadtreeNode node{2, column, row};
       if (!fitter.fit(node)) continue;  // only where there is nothing but noise
       estimated += fitter.estimate(node).depth_sum;
-      measured += fitter.measure(node).depth_sum;
+      sampled += fitter.sample(node).depth_sum;
+      measured += fitter.fit(node)->depth_sum;
     }
   }
   ASSERT_GT(measured, 0.0);
+  EXPECT_NEAR(sampled / measured, 1.0, 0.02);
   EXPECT_NEAR(estimated / measured, 1.0, 0.05);  // rounding to steps is no normal distribution
 }
 
