@@ -45,11 +45,15 @@ std::vector<int> cellBoundaries(int initial, int levels, int length) {
   return boundaries;
 }
 
-/// Index of the cell that begins at `begin`, -1 if none does.
-int cellAt(const std::vector<int>& boundaries, int begin) {
-  const auto first = std::lower_bound(boundaries.begin(), boundaries.end() - 1, begin);
-  if (first == boundaries.end() - 1 || *first != begin) return -1;
-  return static_cast<int>(first - boundaries.begin());
+/// For each pixel the index of the cell that begins there, -1 if none does; of cells beyond the
+/// border, which all begin at the end, none.
+std::vector<int> cellsAt(const std::vector<int>& boundaries) {
+  std::vector<int> cells(static_cast<std::size_t>(boundaries.back()), -1);
+  for (std::size_t i = boundaries.size(); i-- > 0;) {
+    const auto begin = static_cast<std::size_t>(boundaries[i]);
+    if (begin < cells.size()) cells[begin] = static_cast<int>(i);
+  }
+  return cells;
 }
 
 }  // namespace
@@ -62,6 +66,8 @@ QuadtreeGrid::QuadtreeGrid(const QuadtreeLayout& layout, int width, int height) 
   levels_ = countLevels(layout);
   x_ = cellBoundaries(layout.initial_width, levels_, width);
   y_ = cellBoundaries(layout.initial_height, levels_, height);
+  cell_at_x_ = cellsAt(x_);
+  cell_at_y_ = cellsAt(y_);
 }
 
 TileRect QuadtreeGrid::rect(const QuadtreeNode& node) const {
@@ -72,12 +78,14 @@ TileRect QuadtreeGrid::rect(const QuadtreeNode& node) const {
 }
 
 std::optional<QuadtreeNode> QuadtreeGrid::find(const TileRect& rect) const {
-  const int column = cellAt(x_, rect.x);
-  const int row = cellAt(y_, rect.y);
-  if (column < 0 || row < 0 || rect.area() == 0) return std::nullopt;
+  const bool inside = rect.x >= 0 && rect.x < width() && rect.y >= 0 && rect.y < height();
+  if (!inside || rect.area() == 0) return std::nullopt;
+  const int column = cell_at_x_[static_cast<std::size_t>(rect.x)];
+  const int row = cell_at_y_[static_cast<std::size_t>(rect.y)];
+  if (column < 0 || row < 0) return std::nullopt;
   for (int level = 0; level < levels_; ++level) {
-    const int cells = cellsPerSide(level);
-    const QuadtreeNode node{level, column / cells, row / cells};
+    const int shift = levels_ - 1 - level;
+    const QuadtreeNode node{level, column >> shift, row >> shift};
     if (this->rect(node) == rect) return node;
   }
   return std::nullopt;

@@ -54,6 +54,8 @@ class QuadtreeGrid {
   int levels_ = 1;
   std::vector<int> x_;  // cell boundaries, clipped to the image
   std::vector<int> y_;
+  std::vector<int> cell_at_x_;  // of each pixel column: the cell that begins there, -1: none
+  std::vector<int> cell_at_y_;
 };
 
 }  // namespace planecloud

@@ -15,10 +15,17 @@ class TilePredictor {
  public:
   static constexpr int kMaxNeighbors = 8;
 
-  /// A neighbour's plane continued to the node at hand.
+  /// A tile coded before.
+  struct Placed {
+    TileRect rect;
+    QuantisedPlane plane;
+  };
+  /// The tiles around a node, whose planes are continued to it.
   struct Candidates {
+    TileRect node;
     int count = 0;
-    std::array<QuantisedPlane, kMaxNeighbors> planes;
+    std::array<const Placed*, kMaxNeighbors> tiles;
+    std::array<std::int32_t, kMaxNeighbors> centers;  ///< of the continued planes
   };
 
   explicit TilePredictor(const QuadtreeGrid& grid);
@@ -28,7 +35,7 @@ class TilePredictor {
 
   /// A tile covers the cell left of, above, right of, below the node's middle: bits 0 to 3.
   [[nodiscard]] unsigned coveredSides(const QuadtreeNode& node) const;
-  /// The tiles around a node, side neighbours first, each continued to the node's centre.
+  /// Side neighbours come first. Valid until the next `place`.
   [[nodiscard]] Candidates candidates(const QuadtreeNode& node) const;
 
   /// Median of the candidates' centres; the last centre placed when there is no neighbour.
@@ -40,14 +47,18 @@ class TilePredictor {
                                              std::int32_t center) const;
 
  private:
-  struct Placed {
-    TileRect rect;
-    QuantisedPlane plane;
-  };
-  [[nodiscard]] const Placed* at(int cell_column, int cell_row) const;
+  /// The tile over a cell, which may lie one beyond the border.
+  [[nodiscard]] const Placed* at(int cell_column, int cell_row) const {
+    const std::int32_t owner = owner_[cell(cell_column, cell_row)];
+    return owner < 0 ? nullptr : &placed_[static_cast<std::size_t>(owner)];
+  }
+  [[nodiscard]] std::size_t cell(int column, int row) const {
+    return static_cast<std::size_t>((row + 1) * stride_ + column + 1);
+  }
 
   const QuadtreeGrid& grid_;
-  std::vector<std::int32_t> owner_;  // of each cell: index into placed_, -1: none
+  int stride_;
+  std::vector<std::int32_t> owner_;  // of each cell and a rim: index into placed_, -1: none
   std::vector<Placed> placed_;
 };
 

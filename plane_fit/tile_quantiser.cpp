@@ -23,7 +23,8 @@ CameraIntrinsics rounded(CameraIntrinsics camera) {
 /// Nearest multiple of 2^bits, half away from zero, within +-limit.
 std::int32_t roundTo(double value, int bits, double limit) {
   const double step = static_cast<double>(1 << bits);
-  const double steps = std::floor(std::abs(value) / step + 0.5);
+  // Steps are powers of two: the product with the inverse is exact.
+  const double steps = std::floor(std::abs(value) * (1.0 / step) + 0.5);
   const auto magnitude = static_cast<std::int32_t>(std::min(steps * step, limit));
   return value < 0.0 ? -magnitude : magnitude;
 }
