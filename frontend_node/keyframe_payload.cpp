@@ -28,13 +28,20 @@ KeyframePayload encodePayload(const FittedDepth& fitted, const TextureSource& im
     payload.texture = encodeTexture(images.grey, images.color, options.texture);
     return payload;
   }
+  // Planes have what texture may not take, or will not: neither shrinks when the budget grows, so
+  // that coverage does not either. Texture has what planes leave.
+  KeyframeTexture whole = encodeTexture(images.grey, images.color, options.texture);
   const auto share =
       static_cast<std::size_t>(options.texture.max_share * static_cast<double>(*budget));
-  payload.texture = encodeTexture(images.grey, images.color, options.texture, share);
   CodecOptions codec = options.codec;
-  const std::size_t rest = *budget - payload.texture.bytes.size();
+  const std::size_t rest = *budget - std::min(share, whole.bytes.size());
   codec.byte_budget = static_cast<int>(std::max(kLeastStream, rest));
   payload.planes = encode(fitted, codec);
+  const std::size_t planes = std::min(*budget, payload.planes.bytes.size());
+  const std::size_t left = std::min(share, *budget - planes);
+  payload.texture = whole.bytes.size() <= left
+                        ? std::move(whole)
+                        : encodeTexture(images.grey, images.color, options.texture, left);
   return payload;
 }
 

@@ -109,10 +109,9 @@ EncodedPlaneCloud encodeCompact(const PlaneCloud& cloud, const CodecOptions& opt
     (void)encoder.encode(tiles, &bits);
     std::adjacent_difference(bits.begin(), bits.end(), bits.begin());
     const TileMerger merger(grid, cloud.camera, tiles, bits);
-    const int price = merger.lowestPrice([&](int candidate) {
-      return encoder.encode(inCodingOrder(grid, merger.at(candidate).tiles)).size() <= budget;
+    const TileMerger::Version version = merger.largest([&](const TileMerger::Version& candidate) {
+      return encoder.encode(inCodingOrder(grid, candidate.tiles)).size() <= budget;
     });
-    const TileMerger::Version version = merger.at(price);
     tiles = inCodingOrder(grid, version.tiles);
     encoded.bytes = encoder.encode(tiles);
     encoded.statistics = merger.reduce(cloud.statistics, version);

@@ -16,6 +16,11 @@ namespace {
 
 /// Tiles between two looks at the clock.
 constexpr int kTilesAtOnce = 16;
+/// Merging cells upwards takes this of the time for reading them, at most.
+constexpr double kMergeShare = 0.25;
+/// The way from the nodes weighed to tiles takes this of the time for weighing them, at most, and
+/// so does a look at their pixels.
+constexpr double kAfterChoiceShare = 0.5;
 
 template <typename Pixel>
 void checkSize(const ImageView<Pixel>& depth, const Camera& camera) {
@@ -40,6 +45,17 @@ class BudgetMeter {
   }
   [[nodiscard]] bool timeIsUp() const {
     return budget_.deadline && budget_.now() >= *budget_.deadline;
+  }
+  /// Now, or never where there is no deadline.
+  [[nodiscard]] FitBudget::Clock::time_point now() const {
+    return budget_.deadline ? budget_.now() : FitBudget::Clock::time_point::max();
+  }
+  /// Too late for work that takes `share` of the time since `start`.
+  [[nodiscard]] bool timeIsUpForWork(FitBudget::Clock::time_point start, double share) const {
+    if (!budget_.deadline) return false;
+    const std::chrono::duration<double> now = budget_.now().time_since_epoch();
+    const std::chrono::duration<double> since = now - start.time_since_epoch();
+    return now + share * since >= budget_.deadline->time_since_epoch();
   }
   [[nodiscard]] bool hasRoomFor(std::size_t planes) const {
     return !budget_.bytes || static_cast<double>(planes) <= max_planes_;
@@ -108,8 +124,10 @@ PlaneCloud QuadtreeFitter::Impl::fit(ImageView<Pixel> depth, const FitBudget& bu
   tiles_.clear();
   covered_ = depth_sum_ = point_plane_sum_ = 0.0;
   PlaneCloudStatistics& statistics = cloud.statistics;
-  statistics.stopped_by_time = !pyramid_.read(
-      depth, budget.deadline ? std::function<bool()>([&] { return meter.timeIsUp(); }) : nullptr);
+  const FitBudget::Clock::time_point start = meter.now();
+  const auto is_late = [&] { return meter.timeIsUpForWork(start, kMergeShare); };
+  statistics.stopped_by_time =
+      !pyramid_.read(depth, budget.deadline ? std::function<bool()>(is_late) : nullptr);
   if (!statistics.stopped_by_time) {
     if (options_.lambda > 0.0) {
       fitPruned(meter, statistics);
@@ -151,7 +169,10 @@ void QuadtreeFitter::Impl::fitLevels(const BudgetMeter& meter, PlaneCloudStatist
 
 void QuadtreeFitter::Impl::fitPruned(const BudgetMeter& meter, PlaneCloudStatistics& statistics) {
   bool late = false;
-  const auto is_late = [&] { return late = late || meter.timeIsUp(); };
+  const FitBudget::Clock::time_point start = meter.now();
+  const auto is_late = [&] {
+    return late = late || meter.timeIsUpForWork(start, kAfterChoiceShare);
+  };
   const std::vector<QuadtreeNode>& nodes = pruner_.choose(is_late);
   statistics.stopped_by_time = late;
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -68,9 +68,8 @@ EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options
     if (tiles.size() > room) {
       const TileMerger merger(grid, cloud.camera, tiles,
                               std::vector<double>(tiles.size(), 8.0 * kPlaneSize));
-      const int price = merger.lowestPrice(
-          [&](int candidate) { return merger.at(candidate).tiles.size() <= room; });
-      const TileMerger::Version version = merger.at(price);
+      const TileMerger::Version version = merger.largest(
+          [&](const TileMerger::Version& candidate) { return candidate.tiles.size() <= room; });
       tiles = inCodingOrder(grid, version.tiles);
       encoded.statistics = merger.reduce(cloud.statistics, version);
     }

@@ -135,36 +135,49 @@ bool TileMerger::merge(Region& region) const {
   return liesInFront(region.tile, camera_);
 }
 
-std::vector<TileMerger::Verdict> TileMerger::weigh(double price) const {
+std::vector<TileMerger::Verdict> TileMerger::weigh(int step) const {
   std::vector<Verdict> verdicts(regions_.size());
+  if (step >= kPrices) return verdicts;
+  const double price = step == 0 ? 0.0 : kLowestPrice * std::pow(kPriceRatio, step - 1);
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     const Region& region = regions_[i];
     Verdict& verdict = verdicts[i];
     verdict.cost = region.distortion + price * region.bits;
-    if (!region.is_merged) continue;
-    double apart = price * kBranchBits;
-    for (const std::int32_t child : region.children) {
-      if (child != kNone) apart += verdicts[static_cast<std::size_t>(child)].cost;
+    if (region.is_merged) {
+      double apart = price * kBranchBits;
+      for (const std::int32_t child : region.children) {
+        if (child != kNone) apart += verdicts[static_cast<std::size_t>(child)].cost;
+      }
+      verdict.is_split = apart <= verdict.cost;
+      verdict.cost = std::min(verdict.cost, apart);
     }
-    verdict.is_split = apart <= verdict.cost;
-    verdict.cost = std::min(verdict.cost, apart);
+    verdict.is_wanted = !region.has_parent && verdict.cost <= kPixelWorth * region.tile.rect.area();
   }
   return verdicts;
 }
 
-TileMerger::Version TileMerger::at(int step) const {
-  Version version;
-  if (step >= kPrices) return version;
-  std::vector<Verdict> verdicts =
-      weigh(step == 0 ? 0.0 : kLowestPrice * std::pow(kPriceRatio, step - 1));
+std::vector<std::size_t> TileMerger::regionsBelow(int price,
+                                                  const std::vector<Verdict>& lower) const {
+  const std::vector<Verdict> verdicts = weigh(price);
+  std::vector<std::size_t> regions;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (lower[i].is_wanted && !verdicts[i].is_wanted) regions.push_back(i);
+  }
+  const auto flatness = [&](std::size_t i) { return lower[i].cost / regions_[i].tile.rect.area(); };
+  std::stable_sort(regions.begin(), regions.end(),
+                   [&](std::size_t a, std::size_t b) { return flatness(a) < flatness(b); });
+  return regions;
+}
+
+int TileMerger::extraRegions(int price) const {
+  return static_cast<int>(regionsBelow(price, weigh(price - 1)).size());
+}
+
+void TileMerger::collect(std::vector<Verdict> verdicts, Version& version) const {
   for (std::size_t i = regions_.size(); i-- > 0;) {  // parents before children
     const Region& region = regions_[i];
-    Verdict& verdict = verdicts[i];
-    if (!region.has_parent) {
-      verdict.is_wanted = verdict.cost <= kPixelWorth * region.tile.rect.area();
-    }
-    if (!verdict.is_wanted) continue;
-    if (verdict.is_split) {
+    if (!verdicts[i].is_wanted) continue;
+    if (verdicts[i].is_split) {
       for (const std::int32_t child : region.children) {
         if (child != kNone) verdicts[static_cast<std::size_t>(child)].is_wanted = true;
       }
@@ -175,17 +188,35 @@ TileMerger::Version TileMerger::at(int step) const {
     version.inverse_depth += region.moments.q;
     version.distortion += region.distortion;
   }
+}
+
+TileMerger::Version TileMerger::at(int price, int extra) const {
+  Version version;
+  collect(weigh(price), version);
+  if (extra == 0) return version;
+  std::vector<Verdict> lower = weigh(price - 1);
+  std::vector<std::size_t> regions = regionsBelow(price, lower);
+  regions.resize(std::min(regions.size(), static_cast<std::size_t>(extra)));
+  for (Verdict& verdict : lower) verdict.is_wanted = false;
+  for (const std::size_t region : regions) lower[region].is_wanted = true;
+  collect(std::move(lower), version);
   return version;
 }
 
-int TileMerger::lowestPrice(const std::function<bool(int)>& fits) {
+TileMerger::Version TileMerger::largest(const std::function<bool(const Version&)>& fits) const {
   int refused = 0;
   int accepted = kPrices;
   while (accepted - refused > 1) {
     const int middle = (refused + accepted) / 2;
-    (fits(middle) ? accepted : refused) = middle;
+    (fits(at(middle)) ? accepted : refused) = middle;
   }
-  return accepted;
+  int fitting = 0;
+  int too_many = extraRegions(accepted) + 1;
+  while (too_many - fitting > 1) {
+    const int middle = (fitting + too_many) / 2;
+    (fits(at(accepted, middle)) ? fitting : too_many) = middle;
+  }
+  return at(accepted, fitting);
 }
 
 PlaneCloudStatistics TileMerger::reduce(PlaneCloudStatistics statistics,

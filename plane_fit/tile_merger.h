@@ -31,11 +31,14 @@ class TileMerger {
     double inverse_depth = 0.0;  ///< summed over the pixels [1/m]
     double distortion = 0.0;     ///< added by merging, summed over the pixels [1/m^2]
   };
-  /// The cloud at price [0, kPrices] of a bit, ascending: empty at the last.
-  [[nodiscard]] Version at(int price) const;
+  /// The cloud at price [0, kPrices] of a bit, ascending: empty at the last. `extra`: as many of
+  /// the regions that only the next lower price covers are there as well, the flattest first.
+  [[nodiscard]] Version at(int price, int extra = 0) const;
+  /// How many regions the next lower price covers beyond those of `price` (> 0).
+  [[nodiscard]] int extraRegions(int price) const;
 
-  /// The lowest price above 0 that `fits`, by bisection: never rises when more fits.
-  [[nodiscard]] static int lowestPrice(const std::function<bool(int)>& fits);
+  /// The largest version that `fits`, by bisection: never gets smaller when more fits.
+  [[nodiscard]] Version largest(const std::function<bool(const Version&)>& fits) const;
   /// `statistics` of the whole cloud made those of `version`.
   [[nodiscard]] PlaneCloudStatistics reduce(PlaneCloudStatistics statistics,
                                             const Version& version) const;
@@ -67,7 +70,13 @@ class TileMerger {
                                                       const std::vector<std::int32_t>& nodes) const;
   /// Makes `region` one tile; false when that is not in front of the camera.
   [[nodiscard]] bool merge(Region& region) const;
-  [[nodiscard]] std::vector<Verdict> weigh(double price) const;
+  /// Verdicts on all regions at a price [0, kPrices); those that fill no other are wanted or not.
+  [[nodiscard]] std::vector<Verdict> weigh(int price) const;
+  /// Outermost regions wanted at the next lower price alone, the flattest first.
+  [[nodiscard]] std::vector<std::size_t> regionsBelow(int price,
+                                                      const std::vector<Verdict>& lower) const;
+  /// Adds the tiles of wanted regions.
+  void collect(std::vector<Verdict> verdicts, Version& version) const;
   [[nodiscard]] std::size_t index(const QuadtreeNode& node) const {
     return static_cast<std::size_t>(node.row) *
                static_cast<std::size_t>(grid_.columns(node.level)) +

@@ -153,8 +153,8 @@ TEST(TreePruner, StopsWithinAFewNodesAndLeavesACoarserValidCloud) {
   const QuadtreeGrid grid(whole.layout, 640, 480);
   double coverage = -1.0;
   bool stopped_half_way = false;
-  // 122 looks while the image is read, then one every 32 nodes.
-  for (int seconds = 110; seconds < 1100; seconds += seconds < 160 ? 2 : 100) {
+  // 122 looks while the image is read and a reserve, then one every 32 nodes and a reserve.
+  for (int seconds = 110; seconds < 1100; seconds += seconds < 300 ? 3 : 100) {
     const TickingClock clock;
     const PlaneCloud part = fitter.fit(scene.depth.view(), FitBudget::fromNow(seconds, clock));
     EXPECT_LE(*clock.looks, std::max(122, seconds + 4));
