@@ -7,9 +7,10 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
-#include <time.h>
 
 #include <cmath>
+
+#include "thread_time.h"
 
 namespace planecloud {
 namespace {
@@ -85,12 +86,6 @@ Eigen::Isometry3d run(Registration& registration, const Eigen::Isometry3d& T_tar
 }
 
 }  // namespace
-
-double threadTime() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct DenseView::Clouds {
   NormalCloud::Ptr with_normals;
