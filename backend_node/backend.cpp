@@ -111,10 +111,8 @@ class Backend::Impl {
     statistics.keyframes = static_cast<std::size_t>(map_.graph().size());
     statistics.components = map_.graph().components();
     statistics.rejected = rejected_;
-    for (const GraphEdge& edge : map_.graph().edges()) {
-      if (edge.kind != EdgeKind::kClosure) continue;
-      ++(edge.inter_robot ? statistics.closures_inter : statistics.closures_intra);
-    }
+    statistics.closures_intra = map_.graph().closures(false);
+    statistics.closures_inter = map_.graph().closures(true);
     return statistics;
   }
 

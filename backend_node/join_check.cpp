@@ -19,11 +19,20 @@ std::vector<bool> nodesNear(const PoseGraph& graph, const std::vector<GraphEdge>
   std::vector<bool> near(static_cast<std::size_t>(graph.size()), false);
   for (const GraphEdge& closure : closures) {
     for (const KeyframeId& end : {closure.from, closure.to}) {
-      const std::vector<double> lengths = graph.pathLengths(graph.find(end).value());
+      const std::vector<double> lengths = graph.pathLengths(graph.find(end).value(), path);
       for (std::size_t i = 0; i < near.size(); ++i) near[i] = near[i] || lengths[i] <= path;
     }
   }
   return near;
+}
+
+/// Those of a component that are `near`.
+std::vector<int> chosen(const PoseGraph& graph, int component, const std::vector<bool>& near) {
+  std::vector<int> nodes;
+  for (const int node : graph.members(component)) {
+    if (near[static_cast<std::size_t>(node)]) nodes.push_back(node);
+  }
+  return nodes;
 }
 
 }  // namespace
@@ -32,16 +41,12 @@ std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
                                                          const KeyframeRecords& records,
                                                          const ComponentJoin& join,
                                                          const std::vector<bool>& near) const {
-  const auto chosen = [&](int node, int component) {
-    return graph.component(node) == component && near[static_cast<std::size_t>(node)];
-  };
+  const std::vector<int> targets = chosen(graph, join.target, near);
   std::vector<Pair> pairs;
-  for (int source = 0; source < graph.size(); ++source) {
-    if (!chosen(source, join.source)) continue;
+  for (const int source : chosen(graph, join.source, near)) {
     Pair best;
     double best_overlap = kLeastOverlap;
-    for (int target = 0; target < graph.size(); ++target) {
-      if (!chosen(target, join.target)) continue;
+    for (const int target : targets) {
       const Eigen::Isometry3d T_target_source =
           graph.pose(target).inverse() * join.T_target_source * graph.pose(source);
       if (T_target_source.translation().norm() > kLargestPairDistance) continue;
