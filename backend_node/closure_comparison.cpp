@@ -43,8 +43,9 @@ std::vector<int> ClosureComparison::neighbours() const {
   for (std::size_t node = 0; node < paths_from_.size(); ++node) {
     if (paths_from_[node] > limit_) continue;
     for (const int e : graph_.edgesOf(static_cast<int>(node))) {
-      const GraphEdge& edge = graph_.edges()[static_cast<std::size_t>(e)];
-      if (edge.kind == EdgeKind::kClosure && path(edge) <= limit_) found.insert(e);
+      const auto position = static_cast<std::size_t>(e);
+      if (graph_.edges().kind(position) != EdgeKind::kClosure) continue;
+      if (path(graph_.edges()[position]) <= limit_) found.insert(e);
     }
   }
   return {found.begin(), found.end()};

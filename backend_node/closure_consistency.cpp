@@ -50,17 +50,17 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
 
 ClosureConsistency::Testimony ClosureConsistency::hear(const PoseGraph& graph,
                                                        const ClosureComparison& comparison) const {
-  std::vector<std::pair<double, const GraphEdge*>> witnesses;
+  std::vector<std::pair<double, GraphEdge>> witnesses;
   for (const int position : comparison.neighbours()) {
-    const GraphEdge& edge = graph.edges()[static_cast<std::size_t>(position)];
-    witnesses.emplace_back(comparison.path(edge), &edge);
+    const GraphEdge edge = graph.edges()[static_cast<std::size_t>(position)];
+    witnesses.emplace_back(comparison.path(edge), edge);
   }
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   witnesses.resize(std::min(witnesses.size(), kMostWitnesses));
   Testimony testimony;
   for (const auto& [path, edge] : witnesses) {
-    const ClosureComparison::Result result = comparison.compare(*edge);
+    const ClosureComparison::Result result = comparison.compare(edge);
     if (result.distance > options_.max_distance) {
       ++testimony.contradicting;
     } else if (result.independent) {

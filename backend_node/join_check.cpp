@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLargestPairDistance = 2.0;  ///< of the cameras of a pair [m]
 constexpr double kLeastOverlap = 0.3;         ///< predicted, of the views of a pair
+constexpr std::size_t kMostPairs = 12;        ///< looked at, spread over all there are
 
 /// Nodes within `path` [m] of an end of one of the closures.
 std::vector<bool> nodesNear(const PoseGraph& graph, const std::vector<GraphEdge>& closures,
@@ -65,8 +66,10 @@ std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
 double JoinCheck::seenThrough(const PlaneSet& target, const PlaneSet& source,
                               const Eigen::Isometry3d& T_target_source_guess) const {
   // Odometry's drift between the pair and the closures alone would let surfaces seen at a grazing
-  // angle stand out, so the pair is aligned first.
-  const IcapResult alignment = icap(target, source, T_target_source_guess, icap_);
+  // angle stand out, so the pair is aligned first; but from where the join puts it.
+  IcapOptions options = icap_;
+  options.restarts = false;
+  const IcapResult alignment = icap(target, source, T_target_source_guess, options);
   const Eigen::Isometry3d& T_target_source = alignment.T_target_source;
   const VisibilityReport forth = checkVisibility(target, source, T_target_source, icap_.visibility);
   const VisibilityReport back =
@@ -74,11 +77,20 @@ double JoinCheck::seenThrough(const PlaneSet& target, const PlaneSet& source,
   return std::max(forth.seenThroughShare(), back.seenThroughShare());
 }
 
+std::vector<JoinCheck::Pair> JoinCheck::spread(const std::vector<Pair>& pairs) {
+  if (pairs.size() <= kMostPairs) return pairs;
+  std::vector<Pair> some;
+  for (std::size_t i = 0; i < kMostPairs; ++i) {
+    some.push_back(pairs[i * (pairs.size() - 1) / (kMostPairs - 1)]);
+  }
+  return some;
+}
+
 bool JoinCheck::holds(const PoseGraph& graph, const KeyframeRecords& records,
                       const ComponentJoin& join, const std::vector<GraphEdge>& closures,
                       PlaneSetCache& plane_sets) const {
   const std::vector<bool> near = nodesNear(graph, closures, options_.join_check_path);
-  const std::vector<Pair> pairs = overlappingPairs(graph, records, join, near);
+  const std::vector<Pair> pairs = spread(overlappingPairs(graph, records, join, near));
   double sum = 0.0;
   for (const Pair& pair : pairs) {
     sum += seenThrough(plane_sets.get(records, pair.target), plane_sets.get(records, pair.source),

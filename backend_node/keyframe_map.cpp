@@ -95,7 +95,9 @@ KeyframeRecord KeyframeMap::makeRecord(Keyframe keyframe, const PlaneCloud& plan
   map_keyframe->id = keyframe.id;
   map_keyframe->stamp = keyframe.stamp;
   map_keyframe->T_odom_camera = keyframe.T_odom_camera;
-  keyframe.edges = {};  // they are in the graph
+  std::vector<RelativePoseEdge>().swap(keyframe.edges);  // they are in the graph
+  keyframe.planes.bytes.shrink_to_fit();
+  keyframe.descriptor.shrink_to_fit();
   map_keyframe->keyframe = std::make_shared<const Keyframe>(std::move(keyframe));
   map_keyframe->planes = MapPlanes(map_keyframe->keyframe);
   record.sketch = sketchView(planes);

@@ -113,7 +113,7 @@ std::optional<std::size_t> PoseGraph::worstClosure() const {
   std::optional<std::size_t> worst;
   double worst_error = options_.removal_distance;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    if (edges_[i].kind != EdgeKind::kClosure) continue;
+    if (edges_.kind(i) != EdgeKind::kClosure) continue;
     const double error = squaredError(edges_[i]);
     if (error <= worst_error) continue;
     worst_error = error;
@@ -128,7 +128,7 @@ void PoseGraph::solve(OptimisationSummary& summary) {
   problem.fixed.assign(nodes_.size(), false);
   for (int i = 0; i < components(); ++i) problem.fixed[index(members(i).front())] = true;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    problem.edges.push_back({ends_[i].from, ends_[i].to, &edges_[i]});
+    problem.edges.push_back({ends_[i].from, ends_[i].to, edges_[i]});
   }
   solvePoseGraph(options_, problem, summary);
   for (int node = 0; node < size(); ++node) setPose(node, problem.poses[index(node)]);
@@ -157,7 +157,7 @@ OptimisationSummary PoseGraph::optimizeAround(const std::vector<int>& seeds) {
       if (taken[index(e)]) continue;
       taken[index(e)] = true;
       const Ends& ends = ends_[index(e)];
-      problem.edges.push_back({place(ends.from), place(ends.to), &edges_[index(e)]});
+      problem.edges.push_back({place(ends.from), place(ends.to), edges_[index(e)]});
     }
   }
   if (problem.edges.empty()) return summary;
@@ -190,7 +190,7 @@ std::vector<GraphEdge> PoseGraph::adopt(const PoseGraph& copy, const Optimisatio
   std::vector<GraphEdge> removed;
   for (const GraphEdge& gone : summary.removed) {
     for (const int e : edges_of_[index(numbers_.at(gone.from))]) {
-      const GraphEdge& edge = edges_[index(e)];
+      const GraphEdge edge = edges_[index(e)];
       if (edge.kind != EdgeKind::kClosure || edge.from != gone.from || edge.to != gone.to) continue;
       removed.push_back(edge);
       eraseEdge(index(e));

@@ -20,7 +20,7 @@ using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 constexpr float kPointToPlaneVoxel = 0.03F;  // [m]
 constexpr float kGeneralisedVoxel = 0.04F;   // [m]
-constexpr float kFarthestDepth = 6.0F;            // as ICaP [m]
+constexpr float kFarthestDepth = 6.0F;       // as ICaP [m]
 constexpr int kNeighbours = 20;              // of normals and covariances
 constexpr double kLongestMatch = 0.3;        // [m]
 constexpr int kMostIterations = 50;

@@ -55,13 +55,27 @@ TEST(EdgeList, ACopyStaysWhatItWas) {
   EXPECT_EQ(numbers(copy), before);
 }
 
-TEST(EdgeList, CopiesShareWhatIsOld) {
+TEST(EdgeList, GivesBackWhatItGot) {
+  GraphEdge edge;
+  edge.kind = EdgeKind::kClosure;
+  edge.from = {"a", 17, 3};
+  edge.to = {"a robot with a long name", 1700000000123456789U, 42};
+  Vector6d xi;
+  xi << 1.2, -20.1, 0.3, 0.4, -1.7, 2.1;
+  edge.T_from_to = expSe3(xi);
+  edge.information = xi * xi.transpose();  // all but one direction unobserved
+  edge.inter_robot = true;
   EdgeList list;
-  for (std::uint32_t i = 0; i < 150; ++i) list.push_back(numbered(i));
-  const EdgeList copy = list;
-  EXPECT_EQ(&copy[0], &list[0]);
-  list.push_back(numbered(150));
-  EXPECT_EQ(&copy[0], &list[0]);
+  list.push_back(GraphEdge());
+  list.push_back(edge);
+  const GraphEdge back = list[1];
+  EXPECT_EQ(list.kind(1), EdgeKind::kClosure);
+  EXPECT_EQ(back.kind, edge.kind);
+  EXPECT_EQ(back.from, edge.from);
+  EXPECT_EQ(back.to, edge.to);
+  EXPECT_EQ(back.inter_robot, edge.inter_robot);
+  EXPECT_TRUE(back.T_from_to.isApprox(edge.T_from_to, 1e-15));
+  EXPECT_EQ(back.information, edge.information);
 }
 
 }  // namespace
