@@ -21,7 +21,7 @@ namespace planecloud {
 namespace {
 
 /// Keyframes kept prepared for alignment, at a few hundred kilobytes each.
-constexpr std::size_t kPreparedKeyframes = 48;
+constexpr std::size_t kPreparedKeyframes = 32;
 
 /// Of the map: how much it grows before it is worth to optimise it as a whole again.
 constexpr double kLeastGrowth = 0.02;
@@ -111,10 +111,8 @@ class Backend::Impl {
     statistics.keyframes = static_cast<std::size_t>(map_.graph().size());
     statistics.components = map_.graph().components();
     statistics.rejected = rejected_;
-    for (const GraphEdge& edge : map_.graph().edges()) {
-      if (edge.kind != EdgeKind::kClosure) continue;
-      ++(edge.inter_robot ? statistics.closures_inter : statistics.closures_intra);
-    }
+    statistics.closures_intra = map_.graph().closures(false);
+    statistics.closures_inter = map_.graph().closures(true);
     return statistics;
   }
 

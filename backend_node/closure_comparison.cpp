@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <set>
 #include <utility>
 
 #include "planecloud_slam/backend_node/drift_model.h"
@@ -19,20 +21,34 @@ GraphEdge reversed(const GraphEdge& closure) {
 }
 
 ClosureComparison::ClosureComparison(const PoseGraph& graph, const GraphEdge& closure,
-                                     const DriftOptions& drift)
+                                     const DriftOptions& drift, double limit)
     : graph_(graph),
       closure_(closure),
       drift_(drift),
+      limit_(limit),
       from_(graph.find(closure.from).value()),
       to_(graph.find(closure.to).value()),
-      paths_from_(graph.pathLengths(from_)),
-      paths_to_(graph.pathLengths(to_)) {}
+      paths_from_(graph.pathLengths(from_, limit)),
+      paths_to_(graph.pathLengths(to_, limit)) {}
 
 double ClosureComparison::path(const GraphEdge& other) const {
   GraphEdge turned;  // only its ends count
   turned.from = other.to;
   turned.to = other.from;
   return std::min(longerPath(other), longerPath(turned));
+}
+
+std::vector<int> ClosureComparison::neighbours() const {
+  std::set<int> found;
+  for (std::size_t node = 0; node < paths_from_.size(); ++node) {
+    if (paths_from_[node] > limit_) continue;
+    for (const int e : graph_.edgesOf(static_cast<int>(node))) {
+      const auto position = static_cast<std::size_t>(e);
+      if (graph_.edges().kind(position) != EdgeKind::kClosure) continue;
+      if (path(graph_.edges()[position]) <= limit_) found.insert(e);
+    }
+  }
+  return {found.begin(), found.end()};
 }
 
 double ClosureComparison::longerPath(const GraphEdge& other) const {

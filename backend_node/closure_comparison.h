@@ -24,12 +24,15 @@ class ClosureComparison {
     bool independent = false;  ///< the two share no keyframe
   };
 
-  /// Both ends of `closure` must be in `graph`.
-  ClosureComparison(const PoseGraph& graph, const GraphEdge& closure, const DriftOptions& drift);
+  /// Both ends of `closure` must be in `graph`. Paths longer than `limit` [m] count as none.
+  ClosureComparison(const PoseGraph& graph, const GraphEdge& closure, const DriftOptions& drift,
+                    double limit);
 
   [[nodiscard]] Result compare(const GraphEdge& other) const;
   /// `compare(other).path` alone, which is much cheaper.
   [[nodiscard]] double path(const GraphEdge& other) const;
+  /// Positions of the closures in the graph whose path is no longer than the limit, ascending.
+  [[nodiscard]] std::vector<int> neighbours() const;
 
  private:
   [[nodiscard]] double longerPath(const GraphEdge& other) const;
@@ -38,6 +41,7 @@ class ClosureComparison {
   const PoseGraph& graph_;
   GraphEdge closure_;
   DriftOptions drift_;
+  double limit_;
   int from_;
   int to_;
   std::vector<double> paths_from_;  ///< from `from` to every node [m]

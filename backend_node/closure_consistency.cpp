@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "planecloud_slam/backend_node/consistent_group.h"
@@ -27,15 +28,17 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
                                            const JoinJudge& holds) {
   const auto [older, younger] = componentsOf(graph, closure);
   const bool intra = older == younger;
-  const ClosureComparison comparison(graph, closure, drift_);
-  const Testimony testimony = hear(graph, comparison);
+  // Inside a component odometry vouches for itself over long ways; only neighbours add to it.
+  const double limit = intra ? options_.max_path : std::numeric_limits<double>::infinity();
+  const ClosureComparison comparison(graph, closure, drift_, limit);
+  const Testimony testimony = intra ? hear(graph, comparison) : Testimony();
   ClosureAdmission admission;
   if (testimony.contradicting > testimony.agreeing) {
     admission.rejected = 1;
     return admission;
   }
   Pending offered{closure, next_serial_++, {}};
-  makeKnown(comparison, intra, offered);
+  makeKnown(comparison, offered);
   pending_.push_back(std::move(offered));
   admission = intra ? admitIntra(graph, testimony) : admitInter(graph, holds);
   if (pending_.size() > static_cast<std::size_t>(options_.max_pending)) {
@@ -47,18 +50,17 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
 
 ClosureConsistency::Testimony ClosureConsistency::hear(const PoseGraph& graph,
                                                        const ClosureComparison& comparison) const {
-  std::vector<std::pair<double, const GraphEdge*>> witnesses;
-  for (const GraphEdge& edge : graph.edges()) {
-    if (edge.kind != EdgeKind::kClosure) continue;
-    const double path = comparison.path(edge);
-    if (path <= options_.max_path) witnesses.emplace_back(path, &edge);
+  std::vector<std::pair<double, GraphEdge>> witnesses;
+  for (const int position : comparison.neighbours()) {
+    const GraphEdge edge = graph.edges()[static_cast<std::size_t>(position)];
+    witnesses.emplace_back(comparison.path(edge), edge);
   }
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   witnesses.resize(std::min(witnesses.size(), kMostWitnesses));
   Testimony testimony;
   for (const auto& [path, edge] : witnesses) {
-    const ClosureComparison::Result result = comparison.compare(*edge);
+    const ClosureComparison::Result result = comparison.compare(edge);
     if (result.distance > options_.max_distance) {
       ++testimony.contradicting;
     } else if (result.independent) {
@@ -68,12 +70,10 @@ ClosureConsistency::Testimony ClosureConsistency::hear(const PoseGraph& graph,
   return testimony;
 }
 
-void ClosureConsistency::makeKnown(const ClosureComparison& comparison, bool intra,
-                                   Pending& offered) {
+void ClosureConsistency::makeKnown(const ClosureComparison& comparison, Pending& offered) {
   for (Pending& other : pending_) {
     const ClosureComparison::Result result = comparison.compare(other.closure);
-    // Inside a component odometry vouches for itself over long ways; only neighbours add to it.
-    if (!std::isfinite(result.path) || (intra && result.path > options_.max_path)) continue;
+    if (!std::isfinite(result.path)) continue;
     if (result.distance > options_.max_distance) continue;
     offered.agrees.insert(other.serial);
     other.agrees.insert(offered.serial);

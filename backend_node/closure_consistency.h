@@ -55,7 +55,7 @@ class ClosureConsistency {
     std::size_t contradicting = 0;
   };
 
-  void makeKnown(const ClosureComparison& comparison, bool intra, Pending& offered);
+  void makeKnown(const ClosureComparison& comparison, Pending& offered);
   [[nodiscard]] Testimony hear(const PoseGraph& graph, const ClosureComparison& comparison) const;
   [[nodiscard]] ClosureAdmission admitIntra(const PoseGraph& graph, const Testimony& testimony);
   [[nodiscard]] ClosureAdmission admitInter(const PoseGraph& graph, const JoinJudge& holds);

@@ -105,10 +105,11 @@ ClosureVerdict ClosureVerifier::judge(const ClosureCheck& check, double view,
 }
 
 ClosureCheck ClosureVerifier::align(const PlaneSet& target, const PlaneSet& source,
-                                    const Eigen::Isometry3d& T_target_source_guess,
-                                    const Limits& limits) const {
+                                    const Start& start, const Limits& limits) const {
+  IcapOptions options = icap_;
+  options.restarts = options.restarts && start.restarts;
   ClosureCheck check;
-  check.alignment = icap(target, source, T_target_source_guess, icap_);
+  check.alignment = icap(target, source, start.T_target_source, options);
   const Eigen::Isometry3d& T_target_source = check.alignment.T_target_source;
   const VisibilityReport forth = checkVisibility(target, source, T_target_source, icap_.visibility);
   const VisibilityReport back =
@@ -133,7 +134,8 @@ ClosureCheck ClosureVerifier::verify(const PlaneSet& target, const PlaneSet& sou
                                                   options_.unlocated_max_seen_through};
   std::vector<ClosureCheck> checks;
   for (const Eigen::Isometry3d& start : alignmentStarts(guess)) {
-    ClosureCheck check = align(target, source, start, limits);
+    // The other starts are what restarts of theirs would be.
+    ClosureCheck check = align(target, source, {start, checks.empty()}, limits);
     if (check.verdict == ClosureVerdict::kAccepted && !agrees(check.alignment, guess)) {
       check.verdict = ClosureVerdict::kInconsistent;
     }

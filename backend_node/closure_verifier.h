@@ -62,9 +62,14 @@ class ClosureVerifier {
     double max_seen_through = 0.0;
   };
 
+  /// Where an alignment begins, and whether it may begin again around it.
+  struct Start {
+    Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+    bool restarts = true;
+  };
+
   [[nodiscard]] ClosureCheck align(const PlaneSet& target, const PlaneSet& source,
-                                   const Eigen::Isometry3d& T_target_source_guess,
-                                   const Limits& limits) const;
+                                   const Start& start, const Limits& limits) const;
   [[nodiscard]] ClosureVerdict judge(const ClosureCheck& check, double view,
                                      const Limits& limits) const;
   [[nodiscard]] bool agrees(const IcapResult& result, const RelativePoseGuess& guess) const;

@@ -26,14 +26,17 @@ std::vector<AnchorMeasurement> measureAnchor(const PoseGraph& graph,
                                              const std::vector<GraphEdge>& closures,
                                              const DriftOptions& drift) {
   const int anchor = graph.find(closures.front().to).value();
-  const std::vector<double> paths = graph.pathLengths(anchor);
+  std::vector<int> ends;
+  for (const GraphEdge& closure : closures) ends.push_back(graph.find(closure.to).value());
+  const std::vector<double> paths = graph.pathLengthsTo(anchor, ends);
   std::vector<AnchorMeasurement> measurements;
-  for (const GraphEdge& closure : closures) {
-    const int to = graph.find(closure.to).value();
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    const GraphEdge& closure = closures[i];
+    const int to = ends[i];
     const Eigen::Isometry3d& T_target_from = graph.pose(graph.find(closure.from).value());
     const Eigen::Isometry3d T_to_anchor = graph.pose(to).inverse() * graph.pose(anchor);
     const Matrix6d to_anchor = adjoint(T_to_anchor);
-    const double path = std::min(paths[static_cast<std::size_t>(to)], 1e3);
+    const double path = std::min(paths[i], 1e3);
     AnchorMeasurement measurement;
     measurement.T_target_anchor = T_target_from * closure.T_from_to * T_to_anchor;
     measurement.information =

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLargestPairDistance = 2.0;  ///< of the cameras of a pair [m]
 constexpr double kLeastOverlap = 0.3;         ///< predicted, of the views of a pair
+constexpr std::size_t kMostPairs = 12;        ///< looked at, spread over all there are
 
 /// Nodes within `path` [m] of an end of one of the closures.
 std::vector<bool> nodesNear(const PoseGraph& graph, const std::vector<GraphEdge>& closures,
@@ -19,11 +20,20 @@ std::vector<bool> nodesNear(const PoseGraph& graph, const std::vector<GraphEdge>
   std::vector<bool> near(static_cast<std::size_t>(graph.size()), false);
   for (const GraphEdge& closure : closures) {
     for (const KeyframeId& end : {closure.from, closure.to}) {
-      const std::vector<double> lengths = graph.pathLengths(graph.find(end).value());
+      const std::vector<double> lengths = graph.pathLengths(graph.find(end).value(), path);
       for (std::size_t i = 0; i < near.size(); ++i) near[i] = near[i] || lengths[i] <= path;
     }
   }
   return near;
+}
+
+/// Those of a component that are `near`.
+std::vector<int> chosen(const PoseGraph& graph, int component, const std::vector<bool>& near) {
+  std::vector<int> nodes;
+  for (const int node : graph.members(component)) {
+    if (near[static_cast<std::size_t>(node)]) nodes.push_back(node);
+  }
+  return nodes;
 }
 
 }  // namespace
@@ -32,16 +42,12 @@ std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
                                                          const KeyframeRecords& records,
                                                          const ComponentJoin& join,
                                                          const std::vector<bool>& near) const {
-  const auto chosen = [&](int node, int component) {
-    return graph.component(node) == component && near[static_cast<std::size_t>(node)];
-  };
+  const std::vector<int> targets = chosen(graph, join.target, near);
   std::vector<Pair> pairs;
-  for (int source = 0; source < graph.size(); ++source) {
-    if (!chosen(source, join.source)) continue;
+  for (const int source : chosen(graph, join.source, near)) {
     Pair best;
     double best_overlap = kLeastOverlap;
-    for (int target = 0; target < graph.size(); ++target) {
-      if (!chosen(target, join.target)) continue;
+    for (const int target : targets) {
       const Eigen::Isometry3d T_target_source =
           graph.pose(target).inverse() * join.T_target_source * graph.pose(source);
       if (T_target_source.translation().norm() > kLargestPairDistance) continue;
@@ -60,8 +66,10 @@ std::vector<JoinCheck::Pair> JoinCheck::overlappingPairs(const PoseGraph& graph,
 double JoinCheck::seenThrough(const PlaneSet& target, const PlaneSet& source,
                               const Eigen::Isometry3d& T_target_source_guess) const {
   // Odometry's drift between the pair and the closures alone would let surfaces seen at a grazing
-  // angle stand out, so the pair is aligned first.
-  const IcapResult alignment = icap(target, source, T_target_source_guess, icap_);
+  // angle stand out, so the pair is aligned first; but from where the join puts it.
+  IcapOptions options = icap_;
+  options.restarts = false;
+  const IcapResult alignment = icap(target, source, T_target_source_guess, options);
   const Eigen::Isometry3d& T_target_source = alignment.T_target_source;
   const VisibilityReport forth = checkVisibility(target, source, T_target_source, icap_.visibility);
   const VisibilityReport back =
@@ -69,11 +77,20 @@ double JoinCheck::seenThrough(const PlaneSet& target, const PlaneSet& source,
   return std::max(forth.seenThroughShare(), back.seenThroughShare());
 }
 
+std::vector<JoinCheck::Pair> JoinCheck::spread(const std::vector<Pair>& pairs) {
+  if (pairs.size() <= kMostPairs) return pairs;
+  std::vector<Pair> some;
+  for (std::size_t i = 0; i < kMostPairs; ++i) {
+    some.push_back(pairs[i * (pairs.size() - 1) / (kMostPairs - 1)]);
+  }
+  return some;
+}
+
 bool JoinCheck::holds(const PoseGraph& graph, const KeyframeRecords& records,
                       const ComponentJoin& join, const std::vector<GraphEdge>& closures,
                       PlaneSetCache& plane_sets) const {
   const std::vector<bool> near = nodesNear(graph, closures, options_.join_check_path);
-  const std::vector<Pair> pairs = overlappingPairs(graph, records, join, near);
+  const std::vector<Pair> pairs = spread(overlappingPairs(graph, records, join, near));
   double sum = 0.0;
   for (const Pair& pair : pairs) {
     sum += seenThrough(plane_sets.get(records, pair.target), plane_sets.get(records, pair.source),

@@ -38,6 +38,9 @@ class JoinCheck {
                                                    const ComponentJoin& join,
                                                    const std::vector<bool>& near) const;
 
+  /// No more pairs than can be looked at, evenly chosen.
+  [[nodiscard]] static std::vector<Pair> spread(const std::vector<Pair>& pairs);
+
   /// Share of either keyframe's tiles that the other one saw through, the larger one, [0, 1].
   [[nodiscard]] double seenThrough(const PlaneSet& target, const PlaneSet& source,
                                    const Eigen::Isometry3d& T_target_source_guess) const;

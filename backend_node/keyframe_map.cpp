@@ -34,6 +34,7 @@ int KeyframeMap::add(Keyframe keyframe, const PlaneCloud& planes) {
   const int node = graph_.addNode(id, initialPose(keyframe, edges));
   records_.push_back(makeRecord(std::move(keyframe), planes));
   by_session_.emplace(id, node);
+  followHints(node);
   const auto waited = waiting_.find(id);
   if (waited != waiting_.end()) {
     edges.insert(edges.end(), waited->second.begin(), waited->second.end());
@@ -49,6 +50,17 @@ int KeyframeMap::add(Keyframe keyframe, const PlaneCloud& planes) {
   }
   level(node, planes);
   return node;
+}
+
+void KeyframeMap::followHints(int node) {
+  KeyframeRecord& record = records_[static_cast<std::size_t>(node)];
+  for (const KeyframeId& hint : record.keyframe->keyframe->closure_hints) {
+    if (!graph_.find(hint)) hinted_by_[hint].push_back(node);
+  }
+  const auto waited = hinted_by_.find(record.keyframe->id);
+  if (waited == hinted_by_.end()) return;
+  record.hinted_by = std::move(waited->second);
+  hinted_by_.erase(waited);
 }
 
 std::optional<int> KeyframeMap::predecessor(const KeyframeId& id) const {
@@ -83,7 +95,9 @@ KeyframeRecord KeyframeMap::makeRecord(Keyframe keyframe, const PlaneCloud& plan
   map_keyframe->id = keyframe.id;
   map_keyframe->stamp = keyframe.stamp;
   map_keyframe->T_odom_camera = keyframe.T_odom_camera;
-  keyframe.edges = {};  // they are in the graph
+  std::vector<RelativePoseEdge>().swap(keyframe.edges);  // they are in the graph
+  keyframe.planes.bytes.shrink_to_fit();
+  keyframe.descriptor.shrink_to_fit();
   map_keyframe->keyframe = std::make_shared<const Keyframe>(std::move(keyframe));
   map_keyframe->planes = MapPlanes(map_keyframe->keyframe);
   record.sketch = sketchView(planes);
@@ -108,14 +122,10 @@ void KeyframeMap::connect(const GraphEdge& edge) {
 void KeyframeMap::level(int node, const PlaneCloud& planes) {
   if (!frame_.level_with_floor) return;
   const int component = graph_.component(node);
-  int oldest = -1;
-  int members = 0;
-  for (int i = 0; i < graph_.size(); ++i) {
-    if (graph_.component(i) != component) continue;
-    if (oldest < 0) oldest = i;
-    ++members;
-  }
-  if (members > frame_.level_keyframes || levelled_.count(graph_.id(oldest)) > 0) return;
+  const std::vector<int>& members = graph_.members(component);
+  const int oldest = members.front();
+  const bool late = static_cast<int>(members.size()) > frame_.level_keyframes;
+  if (late || levelled_.count(graph_.id(oldest)) > 0) return;
   const MapKeyframe& keyframe = *records_[static_cast<std::size_t>(node)].keyframe;
   const Eigen::Vector3d up_odom = keyframe.T_odom_camera.linear().row(2).transpose();
   const std::optional<Eigen::Vector3d> floor =

@@ -16,8 +16,8 @@
 
 namespace planecloud {
 
-/// The keyframes and their pose graph. Knows where a new keyframe goes, which of its edges have to
-/// wait for keyframes still under way, and how the frame of a component is levelled.
+/// The keyframes and their pose graph. Knows where a new keyframe goes, which edges and hints have
+/// to wait for keyframes still under way, and how the frame of a component is levelled.
 class KeyframeMap {
  public:
   KeyframeMap(const PoseGraphOptions& graph, const MapFrameOptions& frame)
@@ -39,6 +39,7 @@ class KeyframeMap {
   [[nodiscard]] Eigen::Isometry3d initialPose(const Keyframe& keyframe,
                                               const std::vector<GraphEdge>& edges) const;
   [[nodiscard]] KeyframeRecord makeRecord(Keyframe keyframe, const PlaneCloud& planes) const;
+  void followHints(int node);
   void connect(const GraphEdge& edge);
   void level(int node, const PlaneCloud& planes);
 
@@ -47,6 +48,7 @@ class KeyframeMap {
   KeyframeRecords records_;
   std::map<KeyframeId, int> by_session_;                  ///< ordered by robot, session, number
   std::map<KeyframeId, std::vector<GraphEdge>> waiting_;  ///< by the end that has not arrived
+  std::map<KeyframeId, std::vector<int>> hinted_by_;  ///< likewise: who hints at what is to come
   std::set<KeyframeId> levelled_;  ///< oldest keyframes of components that have found their floor
 };
 

@@ -13,8 +13,9 @@ namespace planecloud {
 /// A keyframe of the map and how far its session had come.
 struct KeyframeRecord {
   std::shared_ptr<const MapKeyframe> keyframe;
-  ViewSketch sketch;  ///< of what it saw
-  double path = 0.0;  ///< of its session up to it, by odometry, see motionLength [m]
+  ViewSketch sketch;           ///< of what it saw
+  double path = 0.0;           ///< of its session up to it, by odometry, see motionLength [m]
+  std::vector<int> hinted_by;  ///< keyframes whose closure hint names this one, come before it
 };
 
 /// All keyframes, numbered as the nodes of the pose graph.

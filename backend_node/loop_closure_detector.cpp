@@ -15,8 +15,8 @@
 namespace planecloud {
 namespace {
 
-/// A candidate with what it is judged by: the smaller, the better.
-using Scored = std::pair<double, LoopCandidate>;
+/// Keyframes whose descriptors are compared in full.
+constexpr std::size_t kShortlist = 48;
 
 const MapKeyframe& keyframe(const KeyframeRecords& records, int node) {
   return *records[static_cast<std::size_t>(node)].keyframe;
@@ -26,13 +26,14 @@ bool sameSession(const KeyframeId& a, const KeyframeId& b) {
   return a.session == b.session && a.robot == b.robot;
 }
 
-std::vector<LoopCandidate> best(std::vector<Scored> scored, int count) {
+/// The first `count` of those that score lowest.
+std::vector<LoopCandidate> best(std::vector<std::pair<double, LoopCandidate>> scored, int count) {
   std::stable_sort(scored.begin(), scored.end(),
-                   [](const Scored& a, const Scored& b) { return a.first < b.first; });
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<LoopCandidate> candidates;
-  for (const Scored& entry : scored) {
+  for (const auto& [score, candidate] : scored) {
     if (static_cast<int>(candidates.size()) >= count) break;
-    candidates.push_back(entry.second);
+    candidates.push_back(candidate);
   }
   return candidates;
 }
@@ -40,9 +41,11 @@ std::vector<LoopCandidate> best(std::vector<Scored> scored, int count) {
 }  // namespace
 
 std::vector<LoopCandidate> LoopClosureDetector::detect(const PoseGraph& graph,
-                                                       const KeyframeRecords& records,
-                                                       int source) const {
-  const Query query{graph, records, source, graph.pathLengths(source)};
+                                                       const KeyframeRecords& records, int source) {
+  while (appearances_.size() < records.size()) {
+    appearances_.add(keyframe(records, static_cast<int>(appearances_.size())).keyframe->descriptor);
+  }
+  const Query query{graph, records, source};
   std::vector<LoopCandidate> candidates = near(query);
   const std::vector<LoopCandidate> unlocated = alike(query);
   candidates.insert(candidates.end(), unlocated.begin(), unlocated.end());
@@ -58,35 +61,55 @@ bool LoopClosureDetector::isRevisit(const Query& query, int target) const {
          std::abs(a.path - b.path) >= options_.min_path_gap;
 }
 
+std::optional<double> LoopClosureDetector::misfit(const Query& query, int target) const {
+  const Eigen::Isometry3d T_target_source =
+      query.graph.pose(target).inverse() * query.graph.pose(query.source);
+  const double angle = std::acos(std::clamp(T_target_source.linear()(2, 2), -1.0, 1.0));
+  if (T_target_source.translation().norm() > options_.max_search_radius) return std::nullopt;
+  if (angle > options_.max_view_angle) return std::nullopt;
+  const double overlap = mutualViewOverlap(
+      query.records[static_cast<std::size_t>(target)].sketch,
+      query.records[static_cast<std::size_t>(query.source)].sketch, T_target_source);
+  if (overlap < options_.min_view_overlap) return std::nullopt;
+  return 1.0 - overlap;
+}
+
+void LoopClosureDetector::measure(const Query& query, std::vector<Scored>& located) {
+  std::vector<int> targets;
+  for (const auto& [score, candidate] : located) targets.push_back(candidate.target);
+  const std::vector<double> paths = query.graph.pathLengthsTo(query.source, targets);
+  for (std::size_t i = 0; i < located.size(); ++i) located[i].second.path = paths[i];
+}
+
 std::vector<LoopCandidate> LoopClosureDetector::near(const Query& query) const {
   const PoseGraph& graph = query.graph;
-  const Eigen::Isometry3d& T_map_source = graph.pose(query.source);
-  std::vector<Scored> scored;
-  for (int target = 0; target < graph.size(); ++target) {
-    if (graph.component(target) != graph.component(query.source)) continue;
-    if (!isRevisit(query, target)) continue;
-    const double path = query.paths[static_cast<std::size_t>(target)];
-    const double drift = drift_.translation_drift * std::min(path, 1e6);
-    const double radius =
-        std::min(options_.max_search_radius, options_.search_radius + 2.0 * drift);
-    const Eigen::Isometry3d T_target_source = graph.pose(target).inverse() * T_map_source;
-    const double distance = T_target_source.translation().norm();
-    const double angle = std::acos(std::clamp(T_target_source.linear()(2, 2), -1.0, 1.0));
-    if (distance > radius || angle > options_.max_view_angle) continue;
-    const double overlap = mutualViewOverlap(
-        query.records[static_cast<std::size_t>(target)].sketch,
-        query.records[static_cast<std::size_t>(query.source)].sketch, T_target_source);
-    if (overlap < options_.min_view_overlap) continue;
-    scored.emplace_back(1.0 - overlap, LoopCandidate{target, query.source, true, path, 0.0});
+  const int component = graph.component(query.source);
+  std::vector<Scored> located;
+  for (const int target : graph.nodesAround(query.source, options_.max_search_radius)) {
+    if (graph.component(target) != component || !isRevisit(query, target)) continue;
+    const std::optional<double> score = misfit(query, target);
+    if (score) located.emplace_back(*score, LoopCandidate{target, query.source, true, 0.0, 0.0});
   }
-  return best(std::move(scored), options_.max_spatial);
+  measure(query, located);
+  std::vector<Scored> within;
+  for (const Scored& entry : located) {
+    const LoopCandidate& candidate = entry.second;
+    const double drift = drift_.translation_drift * std::min(candidate.path, 1e6);
+    const Eigen::Vector3d way =
+        graph.pose(candidate.target).translation() - graph.pose(query.source).translation();
+    if (way.norm() <= options_.search_radius + 2.0 * drift) within.push_back(entry);
+  }
+  return best(std::move(within), options_.max_spatial);
 }
 
 std::vector<LoopCandidate> LoopClosureDetector::alike(const Query& query) const {
   const MapKeyframe& source = keyframe(query.records, query.source);
   std::vector<Scored> scored;
-  for (int target = 0; target < query.graph.size(); ++target) {
-    if (query.graph.component(target) == query.graph.component(query.source)) continue;
+  const int component = query.graph.component(query.source);
+  const auto elsewhere = [&](int node) { return query.graph.component(node) != component; };
+  if (query.graph.components() == 1 || options_.max_appearance == 0) return {};
+  for (const int target :
+       appearances_.mostAlike(source.keyframe->descriptor, elsewhere, kShortlist)) {
     const auto comparison = compareAppearance(keyframe(query.records, target).keyframe->descriptor,
                                               source.keyframe->descriptor);
     if (!comparison || comparison->dissimilarity > options_.max_dissimilarity) continue;
@@ -100,17 +123,22 @@ std::vector<LoopCandidate> LoopClosureDetector::alike(const Query& query) const 
 
 void LoopClosureDetector::addHints(const Query& query,
                                    std::vector<LoopCandidate>& candidates) const {
-  for (const KeyframeId& hint : keyframe(query.records, query.source).keyframe->closure_hints) {
+  const KeyframeRecord& source = query.records[static_cast<std::size_t>(query.source)];
+  std::vector<int> targets = source.hinted_by;
+  for (const KeyframeId& hint : source.keyframe->keyframe->closure_hints) {
     const std::optional<int> target = query.graph.find(hint);
-    if (!target || *target == query.source) continue;
+    if (target && *target != query.source) targets.push_back(*target);
+  }
+  for (const int target : targets) {
     const bool known =
         std::any_of(candidates.begin(), candidates.end(),
-                    [&](const LoopCandidate& candidate) { return candidate.target == *target; });
+                    [&](const LoopCandidate& candidate) { return candidate.target == target; });
     if (known) continue;
-    const bool located = query.graph.component(*target) == query.graph.component(query.source);
-    if (located && !isRevisit(query, *target)) continue;
-    const double path = located ? query.paths[static_cast<std::size_t>(*target)] : 0.0;
-    candidates.push_back({*target, query.source, located, path, 0.0});
+    const bool located = query.graph.component(target) == query.graph.component(query.source);
+    if (located && !isRevisit(query, target)) continue;
+    std::vector<Scored> hinted{{0.0, {target, query.source, located, 0.0, 0.0}}};
+    if (located) measure(query, hinted);
+    candidates.push_back(hinted.front().second);
   }
 }
 

@@ -95,7 +95,7 @@ struct ClosureConsistencyOptions {
   /// proposed the join or not [m], [0, 100] ...
   double join_check_path = 5.0;
   /// ... and see through at most this share of each other's tiles on average, [0, 1].
-  double join_seen_through = 0.06;
+  double join_seen_through = 0.03;
   int max_pending = 400;  ///< closures that wait for others; the oldest go, [1, 100000]
 
   template <typename Self, typename Visit>

@@ -10,26 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "planecloud_slam/backend_node/edge_list.h"
+#include "planecloud_slam/backend_node/graph_edge.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
 namespace planecloud {
-
-enum class EdgeKind {
-  kOdometry,  ///< to the previous keyframe, from the frontend
-  kHistory,   ///< to an earlier keyframe, from the frontend
-  kClosure,   ///< found and verified by the backend
-};
-
-/// An edge of the graph as others see it.
-struct GraphEdge {
-  EdgeKind kind = EdgeKind::kOdometry;
-  KeyframeId from;
-  KeyframeId to;
-  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
-  Matrix6d information = Matrix6d::Zero();  ///< at `to`; see se3.h
-  bool inter_robot = false;
-};
 
 /// The planes of a keyframe. A map of ten thousand decoded ones would fill the memory, so they are
 /// kept as they travelled and decoded anew at each access: keep the result of `*` while you use it.
@@ -70,7 +56,7 @@ struct MapSnapshot {
   };
   std::uint64_t revision = 0;  ///< grows with every change
   std::vector<Node> nodes;     ///< ordered by id
-  std::vector<GraphEdge> edges;
+  EdgeList edges;
   int components = 0;
 };
 

@@ -172,7 +172,7 @@ void solvePoseGraph(const PoseGraphOptions& options, PoseGraphProblem& problem,
     if (problem.fixed[i]) ceres_problem.SetParameterBlockConstant(blocks[i].data());
   }
   for (const PoseGraphProblem::Edge& edge : problem.edges) {
-    const GraphEdge& measurement = *edge.measurement;
+    const GraphEdge& measurement = edge.measurement;
     const RelativePoseCost cost(measurement.T_from_to, effectiveInformation(measurement, options));
     ceres_problem.AddResidualBlock(new EdgeCost(cost),
                                    measurement.kind == EdgeKind::kOdometry ? nullptr : kernel.get(),

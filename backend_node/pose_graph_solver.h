@@ -14,7 +14,7 @@ struct PoseGraphProblem {
   struct Edge {
     int from = 0;
     int to = 0;
-    const GraphEdge* measurement = nullptr;  ///< not owned
+    GraphEdge measurement;
   };
   std::vector<Eigen::Isometry3d> poses;
   std::vector<bool> fixed;  ///< same order

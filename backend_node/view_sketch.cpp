@@ -15,7 +15,8 @@ void addSample(const PlanarTile& tile, double x, double y, ViewSketch& sketch) {
   const Eigen::Vector3d ray((x - k.cx) / k.fx, (y - k.cy) / k.fy, 1.0);
   const double inverse_depth = coefficients.dot(ray);
   if (!(inverse_depth > 0.0)) return;
-  sketch.samples.push_back({(ray / inverse_depth).cast<float>(), -tile.inverse_depth});
+  const Eigen::Vector3d normal = -coefficients.normalized();
+  sketch.samples.push_back({(ray / inverse_depth).cast<Eigen::half>(), normal.cast<Eigen::half>()});
 }
 
 }  // namespace

@@ -10,12 +10,14 @@
 
 namespace planecloud {
 
-/// What a keyframe saw along a coarse grid of rays: a kilobyte that stays in memory for every
+/// What a keyframe saw along a coarse grid of rays: half a kilobyte that stays in memory for every
 /// keyframe, enough to predict which keyframes see the same place.
 struct ViewSketch {
   struct Sample {
-    Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< in the optical frame [m]
-    Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< towards the camera, not of unit length
+    /// Three digits are enough here.
+    using Vector = Eigen::Matrix<Eigen::half, 3, 1>;
+    Vector point = Vector::Zero();   ///< in the optical frame [m]
+    Vector normal = Vector::Zero();  ///< unit, towards the camera
   };
   CameraIntrinsics camera;
   std::vector<Sample> samples;  ///< of the rays that met a tile

@@ -79,11 +79,14 @@ std::vector<PatchMatch> matchAnywhere(const PlaneSet& target, const PlaneSet& so
 
 std::vector<PatchMatch> matchInView(const PlaneSet& target, const PlaneSet& source,
                                     const Eigen::Isometry3d& T_target_source,
-                                    const MatchGates& gates) {
+                                    const MatchGates& gates, std::size_t count) {
+  const std::vector<PlanePatch>& sources = source.patches(PlaneSet::Level::kFine);
+  const std::size_t tried = std::min(count, sources.size());
   std::vector<PatchMatch> matches;
-  matches.reserve(source.patches(PlaneSet::Level::kFine).size());
+  matches.reserve(tried);
   const double least_cosine = minCosine(gates);
-  for (const PlanePatch& patch : source.patches(PlaneSet::Level::kFine)) {
+  for (std::size_t i = 0; i < tried; ++i) {
+    const PlanePatch& patch = sources[i];
     const Moved moved{T_target_source * patch.centroid, T_target_source.linear() * patch.normal};
     if (moved.centroid.z() < kNearestDepth || moved.normal.dot(moved.centroid) >= 0.0) continue;
     const PlanePatch* best = bestInView(target, moved, gates, least_cosine);

@@ -29,11 +29,11 @@ struct MatchGates {
                                                     const Eigen::Isometry3d& T_target_source,
                                                     const MatchGates& gates, std::size_t count);
 
-/// The target tile that each fine source patch falls upon in the target's image, or one close by
-/// in the image when that costs less: for guesses that are nearly right. Much faster, and knows the
-/// true extents of tiles.
+/// The target tile that each of the first `count` fine source patches falls upon in the target's
+/// image, or one close by in the image when that costs less: for guesses that are nearly right.
+/// Much faster, and knows the true extents of tiles.
 [[nodiscard]] std::vector<PatchMatch> matchInView(const PlaneSet& target, const PlaneSet& source,
                                                   const Eigen::Isometry3d& T_target_source,
-                                                  const MatchGates& gates);
+                                                  const MatchGates& gates, std::size_t count);
 
 }  // namespace planecloud

@@ -164,6 +164,7 @@ Image<std::int32_t> mapCells(const std::vector<PlanePatch>& patches, const Camer
 
 struct PlaneSet::Contents {
   CameraIntrinsics camera;
+  bool distorted = false;
   std::array<std::vector<PlanePatch>, kLevels> patches;
   PatchColumns coarse_columns;
   Image<std::int32_t> cells;
@@ -176,6 +177,7 @@ PlaneSet::PlaneSet(const PlaneCloud& cloud, const PlaneSetOptions& options) {
   cloud.camera.check();
   const std::shared_ptr<Contents> contents = std::make_shared<Contents>();
   contents->camera = cloud.camera;
+  contents->distorted = cloud.camera.hasDistortion();
   const PatchMaker maker(cloud.camera, options);
   const std::array<PieceLimits, kLevels> limits{
       {{std::max(options.min_tile, kLeastCoarseTile), options.coarse_tile, options.coarse_kept},
@@ -199,7 +201,9 @@ const std::vector<PlanePatch>& PlaneSet::patches(Level level) const {
 }
 
 Eigen::Vector2d PlaneSet::project(const Eigen::Vector3d& point) const {
-  return projectPoint(contents_->camera, point);
+  const CameraIntrinsics& k = contents_->camera;
+  if (contents_->distorted) return projectPoint(k, point);
+  return {k.fx * (point.x() / point.z()) + k.cx, k.fy * (point.y() / point.z()) + k.cy};
 }
 
 int PlaneSet::patchAt(int x, int y) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "planecloud_slam/icap/visibility.h"
@@ -13,13 +14,17 @@
 namespace planecloud {
 namespace {
 
-constexpr double kGateShrink = 0.7;     // of the gates from one iteration to the next
-constexpr double kSettledStep = 2e-4;   // norm of a twist that counts as standing still [m, rad]
-constexpr double kFineDistance = 0.12;  // gate at which the small pieces take over [m]
+constexpr double kGateShrink = 0.7;       // of the gates from one iteration to the next
+constexpr double kSettledStep = 2e-4;     // norm of a twist that counts as standing still [m, rad]
+constexpr double kScoutedStep = 1e-3;     // likewise while a sample leads the way
+constexpr int kPolishingIterations = 10;  // of those there are, at least
+constexpr double kFineDistance = 0.12;    // gate at which the small pieces take over [m]
 // Of the noise's curvature: what the iterations follow. Less than `observability`, for on the way
 // even a poorly known direction leads nearer; what was not observed in the end is taken back.
 constexpr double kFollowed = 0.3;
 constexpr int kRestoringIterations = 4;
+// Pieces that find the way with the fine gates; all of them have their say about the end of it.
+constexpr std::size_t kScouts = 500;
 // An answer with less support is tried again from starts this far around the guess.
 constexpr double kSureSupport = 0.97;
 constexpr double kLostSupport = 0.93;
@@ -43,8 +48,10 @@ struct Schedule {
   MatchGates gates;
   double kernel_width = 0.0;
   bool coarse = false;
-  bool last = false;        ///< the gates are at their final values
-  bool last_stage = false;  ///< only what is observed moves
+  std::size_t coarse_count = 0;  ///< of coarse pieces
+  bool last = false;             ///< the gates are at their final values
+  bool last_stage = false;       ///< only what is observed moves
+  std::size_t fine_count = std::numeric_limits<std::size_t>::max();  ///< of fine pieces
 };
 
 Schedule scheduleOf(int iteration, const IcapOptions& options) {
@@ -64,11 +71,11 @@ Schedule scheduleOf(int iteration, const IcapOptions& options) {
 /// One step of Gauss-Newton within the directions that stand out from noise.
 void iterate(const Pair& pair, const Schedule& schedule, const IcapOptions& options,
              AlignmentProgress& progress) {
-  progress.matches =
-      schedule.coarse
-          ? matchAnywhere(pair.target, pair.source, progress.T_target_source, schedule.gates,
-                          static_cast<std::size_t>(options.coarse_patches))
-          : matchInView(pair.target, pair.source, progress.T_target_source, schedule.gates);
+  progress.matches = schedule.coarse
+                         ? matchAnywhere(pair.target, pair.source, progress.T_target_source,
+                                         schedule.gates, schedule.coarse_count)
+                         : matchInView(pair.target, pair.source, progress.T_target_source,
+                                       schedule.gates, schedule.fine_count);
   progress.enough = progress.matches.size() >= static_cast<std::size_t>(options.min_matches);
   if (!progress.enough) return;
   progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
@@ -84,28 +91,42 @@ void iterate(const Pair& pair, const Schedule& schedule, const IcapOptions& opti
   ++progress.iterations;
 }
 
-void runCoarse(const Pair& pair, const IcapOptions& options, AlignmentProgress& progress) {
+void runCoarse(const Pair& pair, std::size_t pieces, const IcapOptions& options,
+               AlignmentProgress& progress) {
   for (int i = 0; i < options.max_iterations; ++i) {
-    const Schedule schedule = scheduleOf(i, options);
+    Schedule schedule = scheduleOf(i, options);
     if (!schedule.coarse) break;
+    schedule.coarse_count = pieces;
     iterate(pair, schedule, options, progress);
     if (!progress.enough) break;
   }
 }
 
-/// Begins at a gate of at most `gate` [m].
+/// Begins at a gate of at most `gate` [m]; by a sample of the fine pieces.
 void runFine(const Pair& pair, double gate, const IcapOptions& options,
              AlignmentProgress& progress) {
   int first = 0;
   while (first < options.max_iterations && scheduleOf(first, options).gates.distance > gate) {
     ++first;
   }
-  for (int i = first; progress.iterations < options.max_iterations; ++i) {
+  const int most = options.max_iterations - kPolishingIterations;
+  for (int i = first; progress.iterations < most; ++i) {
     Schedule schedule = scheduleOf(i, options);
     schedule.coarse = false;
     schedule.gates.normal_length = options.fine_normal_length;
+    schedule.fine_count = kScouts;
     iterate(pair, schedule, options, progress);
-    if (!progress.enough || (schedule.last && progress.last_step < kSettledStep)) break;
+    if (!progress.enough || (schedule.last && progress.last_step < kScoutedStep)) break;
+  }
+}
+
+/// Settles the answer by all pieces.
+void polish(const Pair& pair, const IcapOptions& options, AlignmentProgress& progress) {
+  if (!progress.enough) return;
+  const Schedule schedule = scheduleOf(options.max_iterations, options);
+  while (progress.iterations < options.max_iterations) {
+    iterate(pair, schedule, options, progress);
+    if (!progress.enough || progress.last_step < kSettledStep) break;
   }
 }
 
@@ -180,11 +201,12 @@ std::vector<Eigen::Isometry3d> startsAround(const Eigen::Isometry3d& T_target_so
 /// Where the coarse stage finds most support from the starts around the guess.
 AlignmentProgress bestRestart(const Pair& pair, const Eigen::Isometry3d& T_target_source_guess,
                               const IcapOptions& options) {
+  const std::size_t pieces = static_cast<std::size_t>(options.coarse_patches) / 2;
   AlignmentProgress best;
   for (const Eigen::Isometry3d& start : startsAround(T_target_source_guess)) {
     AlignmentProgress progress;
     progress.T_target_source = start;
-    runCoarse(pair, options, progress);
+    runCoarse(pair, pieces, options, progress);
     measureSupport(pair, options, progress);
     if (progress.support > best.support) best = progress;
   }
@@ -212,17 +234,18 @@ AlignmentProgress alignRobustly(const PlaneSet& target, const PlaneSet& source,
   AlignmentProgress guess;
   guess.T_target_source = T_target_source_guess;
   AlignmentProgress progress = guess;
-  runCoarse(pair, options, progress);
+  runCoarse(pair, static_cast<std::size_t>(options.coarse_patches), options, progress);
   progress = alignFrom(pair, std::move(progress), kFineDistance, options);
   if (progress.support < kSureSupport) {
     keepBetter(alignFrom(pair, guess, kDirectDistance, options), progress);
   }
-  if (progress.support < kLostSupport) {
+  if (options.restarts && progress.support < kLostSupport) {
     AlignmentProgress again = bestRestart(pair, T_target_source_guess, options);
     if (again.enough) {
       keepBetter(alignFrom(pair, std::move(again), kFineDistance, options), progress);
     }
   }
+  polish(pair, options, progress);
   restoreUnobserved(pair, T_target_source_guess, options, progress);
   slideToSupport(pair, options, progress);
   return progress;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "planecloud_slam/backend_node/robot_colors.h"
 #include "planecloud_slam/rosbags/plan_canvas.h"
@@ -97,16 +98,15 @@ class MapPainter {
         colors_(colorsOf(map, picture.robots)),
         component_(largestComponent(map)),
         T_view_map_(picture.T_view_map) {
-    sample(kCoarseSpacing);
+    samples_ = sampleSurfaces(map_, sampling(kCoarseSpacing));
     turn(alignWallsWithAxes(samples_));
     if (isTall()) turn(0.5 * M_PI);
     layout_ = makeLayout(samples_, allWays());
-    sample(kFineSpacing / layout_.pixels_per_metre);
   }
 
   cv::Mat paint() {
     PlanCanvas canvas(layout_);
-    canvas.drawPlan(paintPlan(samples_, colors_, layout_));
+    canvas.drawPlan(paintSurfaces());
     for (std::size_t i = 0; i < picture_.robots.size(); ++i) drawRobot(canvas, i);
     drawClosures(canvas);
     drawHeader(canvas, layout_, picture_.title, picture_.subtitle);
@@ -116,13 +116,20 @@ class MapPainter {
   }
 
  private:
-  void sample(double spacing) {
+  [[nodiscard]] SurfaceSampling sampling(double spacing) const {
     SurfaceSampling sampling;
     sampling.spacing = spacing;
     sampling.component = component_;
     sampling.T_view_map = T_view_map_;
     for (const PictureRobot& robot : picture_.robots) sampling.robots.push_back(robot.name);
-    samples_ = sampleSurfaces(map_, sampling);
+    return sampling;
+  }
+
+  [[nodiscard]] cv::Mat paintSurfaces() const {
+    PlanRaster raster(layout_, colors_, findFloorHeight(samples_));
+    visitSurfaces(map_, sampling(kFineSpacing / layout_.pixels_per_metre),
+                  [&](const SurfaceSample& sample) { raster.add(sample); });
+    return std::move(raster).paint();
   }
 
   void turn(double angle) {
@@ -233,7 +240,7 @@ class MapPainter {
   const std::vector<PlanColor> colors_;
   const int component_;
   Eigen::Isometry3d T_view_map_;
-  std::vector<SurfaceSample> samples_;
+  std::vector<SurfaceSample> samples_;  ///< coarse
   PlanLayout layout_;
 };
 

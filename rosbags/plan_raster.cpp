@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace planecloud {
 namespace {
@@ -22,18 +23,6 @@ cv::Vec3f toVector(const PlanColor& color) {
   return {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r)};
 }
 
-/// What is seen of one kind of surface: its area and its colour by area.
-struct Layer {
-  Layer(int rows, int columns)
-      : area(rows, columns, 0.0F), color(rows, columns, cv::Vec3f(0.0F, 0.0F, 0.0F)) {}
-  void add(int x, int y, float added, const cv::Vec3f& tint) {
-    area(y, x) += added;
-    color(y, x) += added * tint;
-  }
-  cv::Mat1f area;
-  cv::Mat3f color;
-};
-
 /// The area above which `share` of the touched pixels do not come.
 float areaQuantile(const cv::Mat1f& area, double share) {
   std::vector<float> touched;
@@ -45,18 +34,6 @@ float areaQuantile(const cv::Mat1f& area, double share) {
                      static_cast<std::ptrdiff_t>(share * static_cast<double>(touched.size() - 1));
   std::nth_element(touched.begin(), place, touched.end());
   return *place;
-}
-
-/// Lays the layer over the plan; a pixel with `full` area covers 86 % of what is below.
-void cover(cv::Mat3f& plan, const Layer& layer, float full) {
-  for (int y = 0; y < plan.rows; ++y) {
-    for (int x = 0; x < plan.cols; ++x) {
-      const float area = layer.area(y, x);
-      if (area <= 0.0F) continue;
-      const float share = 1.0F - std::exp(-2.0F * area / full);
-      plan(y, x) = (1.0F - share) * plan(y, x) + share / area * layer.color(y, x);
-    }
-  }
 }
 
 /// White with a line every metre.
@@ -72,46 +49,69 @@ cv::Mat3f makePaper(int rows, int columns, const PlanLayout& layout, double scal
   return paper;
 }
 
+}  // namespace
+
+PlanRaster::PlanRaster(const PlanLayout& layout, std::vector<PlanColor> robot_colors,
+                       float floor_height)
+    : layout_(layout),
+      robot_colors_(std::move(robot_colors)),
+      floor_height_(floor_height),
+      scale_(kRasterOversampling * layout.pixels_per_metre),
+      columns_(static_cast<int>(std::ceil(scale_ * (layout.upper.x() - layout.lower.x())))),
+      rows_(static_cast<int>(std::ceil(scale_ * (layout.upper.y() - layout.lower.y())))) {
+  for (Layer* layer : {&floor_, &furniture_, &walls_}) {
+    layer->area = cv::Mat1f(rows_, columns_, 0.0F);
+    layer->color = cv::Mat3f(rows_, columns_, cv::Vec3f(0.0F, 0.0F, 0.0F));
+  }
+}
+
+void PlanRaster::add(const SurfaceSample& sample) {
+  const Eigen::Vector2d ground = sample.position.head<2>().cast<double>();
+  const auto x = static_cast<int>(std::floor(scale_ * (ground.x() - layout_.lower.x())));
+  const auto y = static_cast<int>(std::floor(scale_ * (layout_.upper.y() - ground.y())));
+  if (x < 0 || y < 0 || x >= columns_ || y >= rows_) return;
+  // Neither upright nor level: the edges of things, and far surfaces that noise has turned.
+  if (sample.normal.z() < kFacesUp && std::abs(sample.normal.z()) > kSteep) return;
+  const PlanColor& color = robot_colors_[static_cast<std::size_t>(sample.robot)];
+  if (std::abs(sample.normal.z()) < kSteep) {
+    walls_.add(x, y, sample.area, 0.75F * kWallColor + 0.25F * toVector(color));
+  } else if (sample.position.z() > floor_height_ + kFloorTolerance) {
+    furniture_.add(x, y, sample.area, toVector(color.thinned(kFurnitureShare)));
+  } else {
+    floor_.add(x, y, sample.area, toVector(color.thinned(kFloorShare)));
+  }
+}
+
 /// Single pixels between samples closed, edges smooth.
-void smooth(Layer& layer, double sigma) {
+void PlanRaster::smooth(Layer& layer, double sigma) {
   cv::GaussianBlur(layer.area, layer.area, {}, sigma);
   cv::GaussianBlur(layer.color, layer.color, {}, sigma);
 }
 
-}  // namespace
-
-cv::Mat paintPlan(const std::vector<SurfaceSample>& samples,
-                  const std::vector<PlanColor>& robot_colors, const PlanLayout& layout) {
-  const double scale = kRasterOversampling * layout.pixels_per_metre;
-  const Eigen::Vector2d size = scale * (layout.upper - layout.lower);
-  const auto columns = static_cast<int>(std::ceil(size.x()));
-  const auto rows = static_cast<int>(std::ceil(size.y()));
-  const float floor_height = findFloorHeight(samples);
-  Layer floor(rows, columns), furniture(rows, columns), walls(rows, columns);
-  for (const SurfaceSample& sample : samples) {
-    const Eigen::Vector2d ground = sample.position.head<2>().cast<double>();
-    const auto x = static_cast<int>(std::floor(scale * (ground.x() - layout.lower.x())));
-    const auto y = static_cast<int>(std::floor(scale * (layout.upper.y() - ground.y())));
-    if (x < 0 || y < 0 || x >= columns || y >= rows) continue;
-    // Neither upright nor level: the edges of things, and far surfaces that noise has turned.
-    if (sample.normal.z() < kFacesUp && std::abs(sample.normal.z()) > kSteep) continue;
-    const PlanColor& color = robot_colors[static_cast<std::size_t>(sample.robot)];
-    if (std::abs(sample.normal.z()) < kSteep) {
-      walls.add(x, y, sample.area, 0.75F * kWallColor + 0.25F * toVector(color));
-    } else if (sample.position.z() > floor_height + kFloorTolerance) {
-      furniture.add(x, y, sample.area, toVector(color.thinned(kFurnitureShare)));
-    } else {
-      floor.add(x, y, sample.area, toVector(color.thinned(kFloorShare)));
+/// Lays the layer over the plan and gives it up; a pixel with `full` area covers 86 % of what is
+/// below.
+void PlanRaster::cover(cv::Mat3f& plan, Layer& layer, float full) {
+  for (int y = 0; y < plan.rows; ++y) {
+    for (int x = 0; x < plan.cols; ++x) {
+      const float area = layer.area(y, x);
+      if (area <= 0.0F) continue;
+      const float share = 1.0F - std::exp(-2.0F * area / full);
+      plan(y, x) = (1.0F - share) * plan(y, x) + share / area * layer.color(y, x);
     }
   }
-  const auto pixel_area = static_cast<float>(1.0 / (scale * scale));
-  smooth(floor, 3.0);
-  smooth(furniture, 1.5);
-  smooth(walls, 0.8);
-  cv::Mat3f plan = makePaper(rows, columns, layout, scale);
-  cover(plan, floor, pixel_area);
-  cover(plan, furniture, 2.0F * pixel_area);
-  cover(plan, walls, areaQuantile(walls.area, kWallQuantile));
+  layer = {};
+}
+
+cv::Mat PlanRaster::paint() && {
+  const auto pixel_area = static_cast<float>(1.0 / (scale_ * scale_));
+  cv::Mat3f plan = makePaper(rows_, columns_, layout_, scale_);
+  smooth(floor_, 3.0);
+  cover(plan, floor_, pixel_area);
+  smooth(furniture_, 1.5);
+  cover(plan, furniture_, 2.0F * pixel_area);
+  smooth(walls_, 0.8);
+  const float full = areaQuantile(walls_.area, kWallQuantile);
+  cover(plan, walls_, full);
   cv::Mat picture;
   plan.convertTo(picture, CV_8UC3);
   return picture;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <string>
 
 namespace planecloud {
 namespace {
@@ -16,6 +15,8 @@ constexpr float kHorizontal = 0.9F;       // least |z| of a horizontal surface's
 constexpr float kVertical = 0.3F;         // largest |z| of a wall's normal
 constexpr float kHeightStep = 0.05F;      // [m]
 constexpr double kFloorShare = 0.25;      // of the largest surface's area
+
+using SampleVisitor = std::function<void(const SurfaceSample&)>;
 
 /// The keyframe whose tiles are sampled.
 struct View {
@@ -30,7 +31,7 @@ int samplesAlong(int pixels, double focal_length, double depth, double spacing) 
 }
 
 void sampleTile(const PlanarTile& tile, const View& view, const SurfaceSampling& sampling,
-                std::vector<SurfaceSample>& samples) {
+                const SampleVisitor& visit) {
   const CameraIntrinsics& camera = view.camera;
   const TileRect& rect = tile.rect;
   const auto u_at = [&](double x) { return static_cast<float>((x - camera.cx) / camera.fx); };
@@ -52,16 +53,16 @@ void sampleTile(const PlanarTile& tile, const View& view, const SurfaceSampling&
       const Eigen::Vector3f ray(u, v, 1.0F);
       const float slope = std::abs(normal.dot(ray));
       if (slope < kLeastIncidence * ray.norm()) continue;
-      samples.push_back({view.T_view_camera * (z * ray), view.T_view_camera.linear() * normal,
-                         z * z * solid_angle / slope, view.robot});
+      visit({view.T_view_camera * (z * ray), view.T_view_camera.linear() * normal,
+             z * z * solid_angle / slope, view.robot});
     }
   }
 }
 
 }  // namespace
 
-std::vector<SurfaceSample> sampleSurfaces(const MapSnapshot& map, const SurfaceSampling& sampling) {
-  std::vector<SurfaceSample> samples;
+void visitSurfaces(const MapSnapshot& map, const SurfaceSampling& sampling,
+                   const SampleVisitor& visit) {
   for (const MapSnapshot::Node& node : map.nodes) {
     const auto robot =
         std::find(sampling.robots.begin(), sampling.robots.end(), node.keyframe->id.robot);
@@ -72,9 +73,14 @@ std::vector<SurfaceSample> sampleSurfaces(const MapSnapshot& map, const SurfaceS
     view.robot = static_cast<int>(robot - sampling.robots.begin());
     const PlaneCloud planes = *node.keyframe->planes;
     for (const PlanarTile& tile : planes.tiles) {
-      sampleTile(tile, view, sampling, samples);
+      sampleTile(tile, view, sampling, visit);
     }
   }
+}
+
+std::vector<SurfaceSample> sampleSurfaces(const MapSnapshot& map, const SurfaceSampling& sampling) {
+  std::vector<SurfaceSample> samples;
+  visitSurfaces(map, sampling, [&](const SurfaceSample& sample) { samples.push_back(sample); });
   return samples;
 }
 

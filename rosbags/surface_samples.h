@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "planecloud_slam/backend_node/map_snapshot.h"
@@ -28,6 +30,11 @@ struct SurfaceSampling {
   Eigen::Isometry3d T_view_map = Eigen::Isometry3d::Identity();
 };
 
+/// Hands the pieces to `visit` one by one: a large map has more of them than memory.
+void visitSurfaces(const MapSnapshot& map, const SurfaceSampling& sampling,
+                   const std::function<void(const SurfaceSample&)>& visit);
+
+/// All of them at once.
 [[nodiscard]] std::vector<SurfaceSample> sampleSurfaces(const MapSnapshot& map,
                                                         const SurfaceSampling& sampling);
 

@@ -30,6 +30,7 @@
 #include "planecloud_slam/plane_fit/option_values.h"
 #include "planecloud_slam/rosbags/sample_statistics.h"
 #include "planecloud_slam/rosbags/trajectory_evaluation.h"
+#include "thread_time.h"
 
 namespace planecloud {
 namespace {

@@ -7,9 +7,10 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
-#include <time.h>
 
 #include <cmath>
+
+#include "thread_time.h"
 
 namespace planecloud {
 namespace {
@@ -19,7 +20,7 @@ using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 constexpr float kPointToPlaneVoxel = 0.03F;  // [m]
 constexpr float kGeneralisedVoxel = 0.04F;   // [m]
-constexpr float kFarthest = 6.0F;            // as ICaP [m]
+constexpr float kFarthestDepth = 6.0F;       // as ICaP [m]
 constexpr int kNeighbours = 20;              // of normals and covariances
 constexpr double kLongestMatch = 0.3;        // [m]
 constexpr int kMostIterations = 50;
@@ -41,7 +42,7 @@ Cloud::Ptr densePoints(const Image<float>& depth, const CameraIntrinsics& camera
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
       const float z = depth(x, y);
-      if (!(z > 0.0F && z < kFarthest)) continue;
+      if (!(z > 0.0F && z < kFarthestDepth)) continue;
       cloud->push_back({static_cast<float>((x - camera.cx) / camera.fx) * z,
                         static_cast<float>((y - camera.cy) / camera.fy) * z, z});
     }
@@ -85,12 +86,6 @@ Eigen::Isometry3d run(Registration& registration, const Eigen::Isometry3d& T_tar
 }
 
 }  // namespace
-
-double threadTime() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct DenseView::Clouds {
   NormalCloud::Ptr with_normals;

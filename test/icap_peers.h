@@ -11,9 +11,6 @@
 /// What ICaP is compared with: PCL's point-to-plane ICP and generalised ICP on the dense clouds.
 namespace planecloud {
 
-/// CPU time of this thread [s].
-[[nodiscard]] double threadTime();
-
 /// A depth image as the two peers want it: points on a grid of 3 and 4 cm, with normals and with
 /// covariances, and the time these took apart from the voxels [s].
 class DenseView {

@@ -49,12 +49,7 @@ class SyntheticPlanes {
   [[nodiscard]] PlaneCloud view(const Eigen::Isometry3d& T_world_camera, double inverse_depth_noise,
                                 unsigned seed) const {
     PlaneCloud cloud;
-    cloud.camera.width = 640;
-    cloud.camera.height = 480;
-    cloud.camera.fx = 525.0;
-    cloud.camera.fy = 525.0;
-    cloud.camera.cx = 319.5;
-    cloud.camera.cy = 239.5;
+    cloud.camera = camera();
     cloud.layout = {32, 32, 8};
     std::mt19937 random(seed);
     const Sight sight{cloud.camera, T_world_camera, inverse_depth_noise};
@@ -62,6 +57,44 @@ class SyntheticPlanes {
       for (int x = 0; x < 640; x += 32) addTiles(sight, {x, y, 32, 32}, random, cloud.tiles);
     }
     return cloud;
+  }
+
+  /// The camera of `view`.
+  [[nodiscard]] static CameraIntrinsics camera() {
+    CameraIntrinsics camera;
+    camera.width = 640;
+    camera.height = 480;
+    camera.fx = 525.0;
+    camera.fy = 525.0;
+    camera.cx = 319.5;
+    camera.cy = 239.5;
+    return camera;
+  }
+
+  /// What the ray of a pixel of `camera` meets first.
+  struct Hit {
+    int face = -1;                                      ///< index into `faces`, -1: nothing
+    double depth = std::numeric_limits<double>::max();  ///< along the optical axis [m]
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< in the world [m]
+  };
+  [[nodiscard]] Hit firstHit(const Eigen::Isometry3d& T_world_camera, double x, double y) const {
+    const CameraIntrinsics k = camera();
+    const Eigen::Vector3d origin = T_world_camera.translation();
+    const Eigen::Vector3d ray =
+        T_world_camera.linear() * Eigen::Vector3d((x - k.cx) / k.fx, (y - k.cy) / k.fy, 1.0);
+    Hit nearest;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Face& face = faces_[i];
+      const Eigen::Vector3d normal = face.half_a.cross(face.half_b);
+      const double depth = normal.dot(face.centre - origin) / normal.dot(ray);
+      if (!(depth > 0.3 && depth < nearest.depth)) continue;
+      const Eigen::Vector3d point = origin + depth * ray;
+      const Eigen::Vector3d offset = point - face.centre;
+      if (std::abs(offset.dot(face.half_a)) > face.half_a.squaredNorm()) continue;
+      if (std::abs(offset.dot(face.half_b)) > face.half_b.squaredNorm()) continue;
+      nearest = {static_cast<int>(i), depth, point};
+    }
+    return nearest;
   }
 
  private:
@@ -87,36 +120,15 @@ class SyntheticPlanes {
 
   /// The face that all corners and the centre of the rectangle see, else -1.
   [[nodiscard]] int commonFace(const Sight& sight, const TileRect& rect) const {
-    const int face = seenFace(sight, rect.x, rect.y);
+    const int face = firstHit(sight.T_world_camera, rect.x, rect.y).face;
     for (const double s : {0.0, 0.5, 1.0}) {
       for (const double t : {0.0, 0.5, 1.0}) {
         const double x = rect.x + s * (rect.width - 1);
         const double y = rect.y + t * (rect.height - 1);
-        if (seenFace(sight, x, y) != face) return -1;
+        if (firstHit(sight.T_world_camera, x, y).face != face) return -1;
       }
     }
     return face;
-  }
-
-  [[nodiscard]] int seenFace(const Sight& sight, double x, double y) const {
-    const CameraIntrinsics& k = sight.camera;
-    const Eigen::Vector3d origin = sight.T_world_camera.translation();
-    const Eigen::Vector3d ray =
-        sight.T_world_camera.linear() * Eigen::Vector3d((x - k.cx) / k.fx, (y - k.cy) / k.fy, 1.0);
-    int nearest = -1;
-    double nearest_depth = std::numeric_limits<double>::max();
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      const Face& face = faces_[i];
-      const Eigen::Vector3d normal = face.half_a.cross(face.half_b);
-      const double depth = normal.dot(face.centre - origin) / normal.dot(ray);
-      if (!(depth > 0.3 && depth < nearest_depth)) continue;
-      const Eigen::Vector3d offset = origin + depth * ray - face.centre;
-      if (std::abs(offset.dot(face.half_a)) > face.half_a.squaredNorm()) continue;
-      if (std::abs(offset.dot(face.half_b)) > face.half_b.squaredNorm()) continue;
-      nearest = static_cast<int>(i);
-      nearest_depth = depth;
-    }
-    return nearest;
   }
 
   /// The face's plane plus the error of a regression over the rectangle.

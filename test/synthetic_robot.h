@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <utility>
@@ -57,47 +59,51 @@ inline Eigen::Isometry3d hallPose(double distance) {
   return lookAlongX(position, yaw, 0.15);
 }
 
-/// What a frontend would send on its way through a world: keyframes with noisy odometry.
-class SyntheticRobot {
+/// The identity, odometry and edges of a frontend's keyframes along a way, with noise.
+class SyntheticOdometry {
  public:
-  SyntheticRobot(const SyntheticPlanes& world, std::string name, unsigned seed)
-      : world_(world), name_(std::move(name)), random_(seed) {}
+  SyntheticOdometry(std::string name, unsigned seed) : name_(std::move(name)), random_(seed) {}
 
   double translation_noise = 0.006;  ///< of an odometry edge [m]
   double rotation_noise = 0.004;     ///< of an odometry edge [rad]
   std::uint64_t session = 1;
+  std::uint32_t history = 0;  ///< edges to keyframes before the previous one
 
-  /// The keyframe at a true pose, 1 s after the one before.
-  Keyframe see(const Eigen::Isometry3d& T_world_camera) {
+  std::vector<Eigen::Isometry3d> truth;  ///< T_world_camera of every keyframe
+
+ protected:
+  /// The keyframe at a true pose, 1 s after the one before; its planes are left to the caller.
+  Keyframe moveTo(const Eigen::Isometry3d& T_world_camera) {
+    const auto number = static_cast<std::uint32_t>(truth.size());
+    truth.push_back(T_world_camera);
     Keyframe keyframe;
-    keyframe.id = {name_, session, next_};
-    keyframe.stamp = 100.0 + next_;
-    if (next_ > 0) {
-      const Eigen::Isometry3d T = T_world_last_.inverse() * T_world_camera * error();
-      T_odom_camera_ = T_odom_camera_ * T;
-      RelativePoseEdge edge;
-      edge.other = {name_, session, next_ - 1};
-      edge.T_other_this = T;
-      edge.information.topLeftCorner<3, 3>() *= 1.0 / (translation_noise * translation_noise);
-      edge.information.bottomRightCorner<3, 3>() *= 1.0 / (rotation_noise * rotation_noise);
-      keyframe.edges.push_back(edge);
+    keyframe.id = {name_, session, number};
+    keyframe.stamp = 100.0 + number;
+    for (std::uint32_t back = 1; back <= std::min(number, 1 + history); ++back) {
+      keyframe.edges.push_back(edgeTo(number - back));
+    }
+    if (number > 0) {
+      T_odom_camera_ = T_odom_camera_ * keyframe.edges.front().T_other_this;
     } else {
       T_odom_camera_.linear() = T_world_camera.linear();
     }
     keyframe.T_odom_camera = T_odom_camera_;
-    CodecOptions codec;
-    codec.encoding = PlaneCloudEncoding::kRaw;
-    keyframe.planes =
-        encode(world_.view(T_world_camera, 1.5e-3, static_cast<unsigned>(random_())), codec);
-    T_world_last_ = T_world_camera;
-    truth.push_back(T_world_camera);
-    ++next_;
     return keyframe;
   }
 
-  std::vector<Eigen::Isometry3d> truth;  ///< T_world_camera of every keyframe
+  unsigned draw() { return static_cast<unsigned>(random_()); }
 
  private:
+  /// Measured from the newest keyframe.
+  RelativePoseEdge edgeTo(std::uint32_t number) {
+    RelativePoseEdge edge;
+    edge.other = {name_, session, number};
+    edge.T_other_this = truth[number].inverse() * truth.back() * error();
+    edge.information.topLeftCorner<3, 3>() *= 1.0 / (translation_noise * translation_noise);
+    edge.information.bottomRightCorner<3, 3>() *= 1.0 / (rotation_noise * rotation_noise);
+    return edge;
+  }
+
   Eigen::Isometry3d error() {
     std::normal_distribution<double> gauss;
     Vector6d xi;
@@ -107,12 +113,28 @@ class SyntheticRobot {
     return expSe3(xi);
   }
 
-  const SyntheticPlanes& world_;
   std::string name_;
   std::mt19937 random_;
-  std::uint32_t next_ = 0;
   Eigen::Isometry3d T_odom_camera_ = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
+};
+
+/// What a frontend would send on its way through a world: keyframes with noisy odometry.
+class SyntheticRobot : public SyntheticOdometry {
+ public:
+  SyntheticRobot(const SyntheticPlanes& world, std::string name, unsigned seed)
+      : SyntheticOdometry(std::move(name), seed), world_(world) {}
+
+  /// The keyframe at a true pose, 1 s after the one before.
+  Keyframe see(const Eigen::Isometry3d& T_world_camera) {
+    Keyframe keyframe = moveTo(T_world_camera);
+    CodecOptions codec;
+    codec.encoding = PlaneCloudEncoding::kRaw;
+    keyframe.planes = encode(world_.view(T_world_camera, 1.5e-3, draw()), codec);
+    return keyframe;
+  }
+
+ private:
+  const SyntheticPlanes& world_;
 };
 
 }  // namespace planecloud

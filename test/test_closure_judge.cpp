@@ -85,10 +85,12 @@ class ClosureJudgementTest : public testing::Test {
     truth->trajectory.push_back({stamp, T_world_camera});
   }
 
-  void close(const Eigen::Isometry3d& T_error) {
+  void close(const Eigen::Isometry3d& T_error, EdgeKind kind = EdgeKind::kClosure) {
     const Eigen::Isometry3d T_from_to =
         levelCamera(0.0, 0.0, 0.0).inverse() * levelCamera(0.1, 0.05, 0.05) * T_error;
-    map_.edges.push_back(closure(T_from_to, kPrecise));
+    GraphEdge edge = closure(T_from_to, kPrecise);
+    edge.kind = kind;
+    map_.edges.push_back(edge);
   }
 
   MapSnapshot map_;
@@ -106,7 +108,7 @@ TEST_F(ClosureJudgementTest, CountsTrueAndFalseClosures) {
   ClosureJudgement judgement = judgeClosures(map_, truths_);
   EXPECT_EQ(judgement.found, 1U);
   EXPECT_EQ(judgement.false_closures, 0U);
-  map_.edges.clear();
+  map_.edges = {};
   close(pose(0.3, 0, 0, 0));
   judgement = judgeClosures(map_, truths_);
   EXPECT_EQ(judgement.found, 0U);
@@ -114,8 +116,7 @@ TEST_F(ClosureJudgementTest, CountsTrueAndFalseClosures) {
 }
 
 TEST_F(ClosureJudgementTest, ConsecutiveAndHistoryEdgesDoNotCount) {
-  close(Eigen::Isometry3d::Identity());
-  map_.edges[0].kind = EdgeKind::kHistory;
+  close(Eigen::Isometry3d::Identity(), EdgeKind::kHistory);
   const ClosureJudgement judgement = judgeClosures(map_, truths_);
   EXPECT_TRUE(judgement.closures.empty());
   EXPECT_EQ(judgement.found, 0U);

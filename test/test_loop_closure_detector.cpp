@@ -39,7 +39,7 @@ class LoopClosureDetectorTest : public testing::Test {
   }
 
   std::vector<int> targets(int source, const LoopCandidateOptions& options = {}) {
-    const LoopClosureDetector detector(options, DriftOptions());
+    LoopClosureDetector detector(options, DriftOptions());
     std::vector<int> result;
     for (const LoopCandidate& candidate : detector.detect(map_.graph(), map_.records(), source)) {
       EXPECT_EQ(candidate.source, source);
@@ -79,6 +79,13 @@ TEST_F(LoopClosureDetectorTest, FollowsHintsIntoOtherComponents) {
   const int hinted = add("a", at(-1.5));
   const int lone = add("b", at(-1.5), {{"a", 1, 1}, {"a", 1, 99}});
   EXPECT_EQ(targets(lone), std::vector<int>{hinted});
+}
+
+TEST_F(LoopClosureDetectorTest, RemembersHintsAtKeyframesStillUnderWay) {
+  const int early = add("a", at(-2.0), {{"b", 1, 1}, {"c", 1, 0}});
+  add("b", at(1.0));
+  const int hinted = add("b", at(-1.9));
+  EXPECT_EQ(targets(hinted), std::vector<int>{early});
 }
 
 TEST_F(LoopClosureDetectorTest, ProposesNoMoreThanItMay) {

@@ -135,6 +135,30 @@ TEST(PoseGraph, NumbersComponentsByTheirOldestKeyframe) {
   EXPECT_EQ(graph.component(2), 2);
 }
 
+TEST(PoseGraph, KeepsComponentsApartAsTheyJoinInAnyOrder) {
+  PoseGraph graph{PoseGraphOptions()};
+  for (int i = 0; i < 8; ++i) graph.addNode(idOf(i), Eigen::Isometry3d::Identity());
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
+  graph.addEdge(edgeBetween(idOf(2), idOf(5), same));
+  graph.addEdge(edgeBetween(idOf(7), idOf(3), same));
+  graph.addEdge(edgeBetween(idOf(5), idOf(3), same));
+  EXPECT_EQ(graph.components(), 5);
+  EXPECT_EQ(graph.members(2), (std::vector<int>{2, 3, 5, 7}));
+  EXPECT_EQ(graph.members(3), std::vector<int>{4});
+  EXPECT_EQ(graph.component(6), 4);
+}
+
+TEST(PoseGraph, FindsNodesWhereTheyMovedTo) {
+  PoseGraph graph{PoseGraphOptions()};
+  for (int i = 0; i < 5; ++i) {
+    graph.addNode(idOf(i), Eigen::Isometry3d(Eigen::Translation3d(10.0 * i, -3.0, 0.0)));
+  }
+  EXPECT_EQ(graph.nodesAround(1, 4.0), std::vector<int>{1});
+  graph.moveComponent(4, Eigen::Isometry3d(Eigen::Translation3d(-31.0, 0.0, 0.0)));
+  EXPECT_EQ(graph.nodesAround(1, 4.0), (std::vector<int>{1, 4}));
+  EXPECT_EQ(graph.nodesAround(3, 4.0), std::vector<int>{3});
+}
+
 TEST(PoseGraph, LeavesADirectionNobodyObservesWhereItWas) {
   PoseGraph graph{PoseGraphOptions()};
   graph.addNode(idOf(0), Eigen::Isometry3d::Identity());
@@ -208,6 +232,10 @@ TEST(PoseGraph, MeasuresTheShortestWayThroughCompleteMeasurements) {
   EXPECT_DOUBLE_EQ(graph.pathLengths(0)[4], 4.0);
   graph.addEdge(edgeBetween(idOf(0), idOf(3), step, EdgeKind::kClosure));
   EXPECT_DOUBLE_EQ(graph.pathLengths(0)[4], 2.0);
+  EXPECT_TRUE(std::isinf(graph.pathLengths(0, 1.5)[4]));
+  EXPECT_DOUBLE_EQ(graph.pathLengths(0, 1.5)[3], 1.0);
+  const std::vector<double> some = graph.pathLengthsTo(0, {4, 5, 3, 4});
+  EXPECT_EQ(some, (std::vector<double>{2.0, graph.pathLengths(0)[5], 1.0, 2.0}));
 }
 
 TEST(PoseGraph, RefusesEdgesWithoutTheirKeyframes) {
