@@ -21,7 +21,7 @@ namespace planecloud {
 namespace {
 
 /// Keyframes kept prepared for alignment, at a few hundred kilobytes each.
-constexpr std::size_t kPreparedKeyframes = 32;
+constexpr std::size_t kPreparedKeyframes = 24;
 
 /// Of the map: how much it grows before it is worth to optimise it as a whole again.
 constexpr double kLeastGrowth = 0.02;

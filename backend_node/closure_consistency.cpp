@@ -124,6 +124,8 @@ ClosureAdmission ClosureConsistency::admitInter(const PoseGraph& graph, const Jo
   ClosureAdmission admission;
   std::vector<GraphEdge> closures = closuresAt(group);
   if (countIndependent(closures) < static_cast<std::size_t>(options_.min_inter)) return admission;
+  // The last one is in no group: what the others say has been judged before.
+  if (group.back() + 1 != pending_.size()) return admission;
   std::vector<std::size_t> others;
   std::set_difference(peers.begin(), peers.end(), group.begin(), group.end(),
                       std::back_inserter(others));

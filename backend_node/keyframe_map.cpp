@@ -33,7 +33,6 @@ int KeyframeMap::add(Keyframe keyframe, const PlaneCloud& planes) {
   std::vector<GraphEdge> edges = graphEdges(keyframe);
   const int node = graph_.addNode(id, initialPose(keyframe, edges));
   records_.push_back(makeRecord(std::move(keyframe), planes));
-  by_session_.emplace(id, node);
   followHints(node);
   const auto waited = waiting_.find(id);
   if (waited != waiting_.end()) {
@@ -64,8 +63,8 @@ void KeyframeMap::followHints(int node) {
 }
 
 std::optional<int> KeyframeMap::predecessor(const KeyframeId& id) const {
-  const auto next = by_session_.lower_bound(id);
-  if (next == by_session_.begin()) return std::nullopt;
+  const auto next = graph_.numbers().lower_bound(id);
+  if (next == graph_.numbers().begin()) return std::nullopt;
   const auto& [before, node] = *std::prev(next);
   if (before.robot != id.robot || before.session != id.session) return std::nullopt;
   return node;
@@ -142,7 +141,7 @@ void KeyframeMap::level(int node, const PlaneCloud& planes) {
 std::shared_ptr<const MapSnapshot> KeyframeMap::snapshot(std::uint64_t revision) const {
   auto snapshot = std::make_shared<MapSnapshot>();
   snapshot->revision = revision;
-  for (const auto& [id, node] : by_session_) {
+  for (const auto& [id, node] : graph_.numbers()) {
     snapshot->nodes.push_back({records_[static_cast<std::size_t>(node)].keyframe, graph_.pose(node),
                                graph_.component(node)});
   }

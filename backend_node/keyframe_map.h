@@ -46,7 +46,6 @@ class KeyframeMap {
   MapFrameOptions frame_;
   PoseGraph graph_;
   KeyframeRecords records_;
-  std::map<KeyframeId, int> by_session_;                  ///< ordered by robot, session, number
   std::map<KeyframeId, std::vector<GraphEdge>> waiting_;  ///< by the end that has not arrived
   std::map<KeyframeId, std::vector<int>> hinted_by_;  ///< likewise: who hints at what is to come
   std::set<KeyframeId> levelled_;  ///< oldest keyframes of components that have found their floor

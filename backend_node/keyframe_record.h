@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -19,6 +20,6 @@ struct KeyframeRecord {
 };
 
 /// All keyframes, numbered as the nodes of the pose graph.
-using KeyframeRecords = std::vector<KeyframeRecord>;
+using KeyframeRecords = std::deque<KeyframeRecord>;
 
 }  // namespace planecloud

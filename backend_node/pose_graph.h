@@ -38,6 +38,8 @@ class PoseGraph {
   void addEdge(const GraphEdge& edge);
 
   [[nodiscard]] std::optional<int> find(const KeyframeId& id) const;
+  /// All nodes in order of robot, session and number.
+  [[nodiscard]] const std::map<KeyframeId, int>& numbers() const { return numbers_; }
   [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
   [[nodiscard]] const KeyframeId& id(int node) const { return at(node).id; }
   [[nodiscard]] const Eigen::Isometry3d& pose(int node) const { return at(node).T_map_camera; }

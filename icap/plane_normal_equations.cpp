@@ -59,8 +59,13 @@ class Sums {
     Vector6d jacobian;  // of the distance by a twist
     jacobian << r.normal, r.point.cross(r.normal);
     const double spread = weight * r.normal_variance;
-    hessian_.noalias() += weight * jacobian * jacobian.transpose();
-    spread_along_.noalias() += spread * jacobian * jacobian.transpose();
+    for (Eigen::Index column = 0; column < 6; ++column) {  // symmetric: the lower half in `finish`
+      for (Eigen::Index row = 0; row <= column; ++row) {
+        const double product = jacobian[row] * jacobian[column];
+        hessian_(row, column) += weight * product;
+        spread_along_(row, column) += spread * product;
+      }
+    }
     gradient_ += weight * r.distance * jacobian;
     spread_ += spread;
     spread_point_ += spread * r.point;
@@ -80,7 +85,7 @@ class Sums {
 
   void finish(PlaneNormalEquations& system) const {
     const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-    system.hessian = hessian_;
+    system.hessian = hessian_.selfadjointView<Eigen::Upper>();
     system.hessian.bottomRightCorner<3, 3>() += weight_ * identity - dyads_;
     system.gradient = gradient_;
     // Across its normal a point's motion under a twist, [I, -[p]x], turns into distance by the
@@ -89,7 +94,7 @@ class Sums {
     system.noise.topRightCorner<3, 3>() = -skew(spread_point_);
     system.noise.bottomLeftCorner<3, 3>() = skew(spread_point_);
     system.noise.bottomRightCorner<3, 3>() = spread_square_.trace() * identity - spread_square_;
-    system.noise -= spread_along_;
+    system.noise -= Matrix6d(spread_along_.selfadjointView<Eigen::Upper>());
     system.noise.bottomRightCorner<3, 3>() += weight_variance_ * identity + dyads_variance_;
   }
 

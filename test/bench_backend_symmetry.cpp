@@ -6,8 +6,12 @@
 // metres (doors of an office), known odometry; and the first one with a single box that tells one
 // side from the other, seen by two robots of unknown relation, the second one after the first.
 // Ten seeds of noise and furniture each; false and found as in the report of `replay`.
-// Usage: bench_backend_symmetry [key=value...], e.g. loop_closure/consistency/min_inter=3
+// Usage: bench_backend_symmetry [SEEDS] [key=value...], e.g. loop_closure/consistency/min_inter=3
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -20,7 +24,6 @@
 namespace planecloud {
 namespace {
 
-constexpr unsigned kSeeds = 10;
 constexpr double kSpacing = 0.3;  ///< of keyframes [m]
 constexpr double kPeriod = 2.0;   ///< of the alcoves [m]
 
@@ -71,6 +74,11 @@ PaintedWorld periodicHall(unsigned seed) {
   }
   return world;
 }
+
+struct Settings {
+  unsigned seeds = 10;
+  BackendOptions backend;
+};
 
 struct Outcome {
   std::size_t closures = 0;
@@ -126,29 +134,39 @@ void report(const char* name, const std::vector<Outcome>& outcomes) {
       static_cast<double>(sum.components) / static_cast<double>(outcomes.size()));
 }
 
+/// Drives through the worlds of all seeds.
+void runWorld(const char* name, const std::function<PaintedWorld(unsigned)>& make_world, int robots,
+              const Settings& settings) {
+  std::vector<Outcome> outcomes;
+  for (unsigned seed = 1; seed <= settings.seeds; ++seed) {
+    outcomes.push_back(drive(make_world(seed), robots, seed, settings.backend));
+  }
+  report(name, outcomes);
+}
+
 int run(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  BackendOptions options;
+  Settings settings;
   OptionValues values;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     const std::size_t equals = argument.find('=');
-    if (equals == std::string::npos) return 2;
-    values[argument.substr(0, equals)] = argument.substr(equals + 1);
+    if (equals == std::string::npos) {
+      settings.seeds = static_cast<unsigned>(std::atoi(argv[i]));
+    } else {
+      values[argument.substr(0, equals)] = argument.substr(equals + 1);
+    }
   }
-  takeOptions(values, options, "");
-  if (!values.empty()) return 2;
-  std::vector<Outcome> half_turn, periodic, two_robots;
-  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-    half_turn.push_back(drive(halfTurnHall(seed), 1, seed, options));
-    periodic.push_back(drive(periodicHall(seed), 1, seed, options));
-    PaintedWorld marked = halfTurnHall(seed);
-    marked.addBox({-0.6, -1.7, 0.8}, {0.35, 0.2, 0.8}, 99);
-    two_robots.push_back(drive(marked, 2, seed, options));
-  }
-  report("the same after half a turn", half_turn);
-  report("the same every two metres", periodic);
-  report("half a turn but one box, two robots", two_robots);
+  takeOptions(values, settings.backend, "");
+  if (!values.empty() || settings.seeds == 0) return 2;
+  runWorld("the same after half a turn", halfTurnHall, 1, settings);
+  runWorld("the same every two metres", periodicHall, 1, settings);
+  const auto marked_hall = [](unsigned seed) {
+    PaintedWorld world = halfTurnHall(seed);
+    world.addBox({-0.6, -1.7, 0.8}, {0.35, 0.2, 0.8}, 99);
+    return world;
+  };
+  runWorld("half a turn but one box, two robots", marked_hall, 2, settings);
   return 0;
 }
 
