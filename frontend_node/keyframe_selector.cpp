@@ -12,6 +12,7 @@ void KeyframeSelectorOptions::check() const {
   checkRange("keyframe/max_translation", max_translation, 0.01, 10.0);
   checkRange("keyframe/max_rotation", max_rotation, 0.01, 3.0);
   checkRange("keyframe/min_entropy_ratio", min_entropy_ratio, 0.0, 1.0);
+  checkRange("keyframe/min_overlap", min_overlap, 0.0, 1.0);
 }
 
 double poseEntropy(const Matrix6d& information) {
@@ -38,7 +39,7 @@ void KeyframeSelector::reset() {
 }
 
 bool KeyframeSelector::isLeavingKeyframe(const Eigen::Isometry3d& T_keyframe_camera,
-                                         const Matrix6d& information) {
+                                         const Matrix6d& information, double overlap) {
   const double entropy = poseEntropy(information);
   if (!has_first_entropy_) {
     first_entropy_ = entropy;
@@ -49,7 +50,7 @@ bool KeyframeSelector::isLeavingKeyframe(const Eigen::Isometry3d& T_keyframe_cam
   entropy_ratio_ = first_entropy_ < 0.0 ? entropy / first_entropy_ : 1.0;
   return T_keyframe_camera.translation().norm() > options_.max_translation ||
          rotationAngle(T_keyframe_camera) > options_.max_rotation ||
-         entropy_ratio_ < options_.min_entropy_ratio;
+         overlap < options_.min_overlap || entropy_ratio_ < options_.min_entropy_ratio;
 }
 
 }  // namespace planecloud

@@ -14,12 +14,16 @@ struct KeyframeSelectorOptions {
   double max_translation = 0.2;     ///< from the keyframe [m], [0.01, 10]
   double max_rotation = 0.26;       ///< from the keyframe [rad], [0.01, 3]
   double min_entropy_ratio = 0.85;  ///< of Kerl 2013b sec. IV-B, [0, 1]; 0: never by entropy
+  /// Share of the keyframe's points still in view, [0, 1]; 0: never by overlap. Near scenes leave
+  /// the view after a shorter way than far ones.
+  double min_overlap = 0.0;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("max_translation", self.max_translation);
     visit("max_rotation", self.max_rotation);
     visit("min_entropy_ratio", self.min_entropy_ratio);
+    visit("min_overlap", self.min_overlap);
   }
 
   /// Throws std::invalid_argument naming key, value and range.
@@ -42,10 +46,10 @@ class KeyframeSelector {
   /// A new keyframe was opened: its first tracked frame will set the reference entropy.
   void reset();
 
-  /// True when the frame at `T_keyframe_camera`, aligned to the keyframe with `information`,
-  /// should become the next keyframe.
+  /// True when the frame at `T_keyframe_camera`, aligned to the keyframe with `information` and
+  /// with this share of its points in view, should become the next keyframe.
   [[nodiscard]] bool isLeavingKeyframe(const Eigen::Isometry3d& T_keyframe_camera,
-                                       const Matrix6d& information);
+                                       const Matrix6d& information, double overlap);
 
   /// Entropy of the last frame over that of the first one after the keyframe; 1 at first.
   [[nodiscard]] double entropyRatio() const { return entropy_ratio_; }

@@ -40,6 +40,7 @@ void apply(KeyframeConfig& config, KeyframeSelectorOptions& options) {
   options.max_translation = config.max_translation;
   options.max_rotation = config.max_rotation;
   options.min_entropy_ratio = config.min_entropy_ratio;
+  options.min_overlap = config.min_overlap;
 }
 
 void apply(LinkConfig& config, LinkOptions& options) {

@@ -85,8 +85,8 @@ FrameResult TrackingSession::process(const RgbdFrame& frame) {
   }
   const Alignment alignment = tracker_.align(
       *reference_.points, pyramid_, {{T_reference_predicted_, T_reference_last_}, brightness_});
-  const bool leaving =
-      selector_.isLeavingKeyframe(alignment.T_reference_current, alignment.normal_matrix);
+  const bool leaving = selector_.isLeavingKeyframe(alignment.T_reference_current,
+                                                   alignment.normal_matrix, alignment.overlap);
   const std::string fault = loss_.findAlignmentFault(alignment, motionOf(alignment, frame.stamp));
   return fault.empty() ? accept(frame, alignment, leaving) : recover(frame, fault);
 }
@@ -174,8 +174,8 @@ std::vector<Eigen::Isometry3d> TrackingSession::possibleMotions(double stamp) co
 FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation& found) {
   const bool is_elsewhere = found.view != reference_.view;
   if (is_elsewhere) switchTo(found);
-  const bool leaving = selector_.isLeavingKeyframe(found.alignment.T_reference_current,
-                                                   found.alignment.normal_matrix);
+  const bool leaving = selector_.isLeavingKeyframe(
+      found.alignment.T_reference_current, found.alignment.normal_matrix, found.alignment.overlap);
   FrameResult result = accept(frame, found.alignment, leaving);
   if (is_elsewhere) {
     result.status = TrackingStatus::kRelocalised;

@@ -36,6 +36,8 @@ struct TrackingRun {
 /// The spacings over which figures are averaged [m]: a single ATE is close to chaotic.
 [[nodiscard]] const std::vector<double>& spacings();
 
+/// Way along a trajectory [m].
+[[nodiscard]] double pathLength(const Trajectory& trajectory);
 /// CPU time of this thread [s].
 [[nodiscard]] double threadSeconds();
 [[nodiscard]] double quantile(std::vector<double> values, double share);

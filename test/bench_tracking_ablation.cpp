@@ -13,20 +13,11 @@ struct Row {
   double keyframes_per_metre = 0.0, kilobytes_per_metre = 0.0, lost = 0.0;
 };
 
-double pathLength(const Trajectory& trajectory) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    length += (trajectory[i].pose.translation() - trajectory[i - 1].pose.translation()).norm();
-  }
-  return length;
-}
-
 Row measure(const std::shared_ptr<const FrameSet>& set, FrontendOptions options) {
   Row row;
   std::vector<double> times;
   const double share = 1.0 / static_cast<double>(spacings().size());
-  const Trajectory driven(set->truth.begin(), set->truth.end());
-  const double metres = pathLength(driven);
+  const double metres = pathLength(set->truth);
   for (const double spacing : spacings()) {
     options.keyframe.max_translation = spacing;
     const TrackingRun run = track(*set, options);

@@ -85,6 +85,8 @@ void comparePeer(const FrameSets& sets, const FrontendOptions& options) {
     std::printf("%-22s %-14s %6.1fx %6.1fx\n", set->name.c_str(), "faster by",
                 quantile(peer.track_times, 0.5) / quantile(own.track_times, 0.5),
                 quantile(peer.track_times, 0.95) / quantile(own.track_times, 0.95));
+    std::printf("%-22s keyframes per metre: %.1f\n", set->name.c_str(),
+                static_cast<double>(own.keyframes.size()) / pathLength(set->truth));
     const double per_frame = (own.keyframe_time + quantile(own.track_times, 0.5) *
                                                       static_cast<double>(own.frames.size())) /
                              static_cast<double>(own.frames.size());

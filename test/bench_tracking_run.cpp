@@ -43,6 +43,14 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(rank)];
 }
 
+double pathLength(const Trajectory& trajectory) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    length += (trajectory[i].pose.translation() - trajectory[i - 1].pose.translation()).norm();
+  }
+  return length;
+}
+
 const std::vector<double>& spacings() {
   static const std::vector<double> values = {0.15, 0.20, 0.25, 0.30};
   return values;

@@ -17,19 +17,28 @@ using synthetic::pose;
 TEST(KeyframeSelector, TranslationAndRotationEachSuffice) {
   KeyframeSelector selector(KeyframeSelectorOptions{});
   const Matrix6d information = 1e6 * Matrix6d::Identity();
-  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.15, 0, 0, 0, 0.1, 0), information));
-  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.3, 0, 0), information));
-  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0, 0, 0, 0, 0.4, 0), information));
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.15, 0, 0, 0, 0.1, 0), information, 1.0));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.3, 0, 0), information, 1.0));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0, 0, 0, 0, 0.4, 0), information, 1.0));
+}
+
+TEST(KeyframeSelector, LosingTheViewEndsTheKeyframe) {
+  KeyframeSelectorOptions options;
+  options.min_overlap = 0.7;
+  KeyframeSelector selector(options);
+  const Matrix6d information = 1e6 * Matrix6d::Identity();
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.01, 0, 0), information, 0.75));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.01, 0, 0), information, 0.65));
 }
 
 TEST(KeyframeSelector, GrowingUncertaintyEndsTheKeyframe) {
   KeyframeSelector selector(KeyframeSelectorOptions{});
-  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.05, 0, 0), 1e6 * Matrix6d::Identity()));
-  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.06, 0, 0), 7e5 * Matrix6d::Identity()));
-  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.07, 0, 0), 1e4 * Matrix6d::Identity()));
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.05, 0, 0), 1e6 * Matrix6d::Identity(), 1.0));
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.06, 0, 0), 7e5 * Matrix6d::Identity(), 1.0));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0.07, 0, 0), 1e4 * Matrix6d::Identity(), 1.0));
   EXPECT_LT(selector.entropyRatio(), 0.85);
   selector.reset();
-  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.01, 0, 0), 1e4 * Matrix6d::Identity()));
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0.01, 0, 0), 1e4 * Matrix6d::Identity(), 1.0));
 }
 
 TEST(KeyframeSelector, EntropyIsThatOfAGaussian) {
@@ -42,8 +51,8 @@ TEST(KeyframeSelector, EntropyIsThatOfAGaussian) {
 
 TEST(KeyframeSelector, AnAlignmentWithoutInformationEndsTheKeyframe) {
   KeyframeSelector selector(KeyframeSelectorOptions{});
-  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0, 0, 0), 1e6 * Matrix6d::Identity()));
-  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0, 0, 0), Matrix6d::Zero()));
+  EXPECT_FALSE(selector.isLeavingKeyframe(pose(0, 0, 0), 1e6 * Matrix6d::Identity(), 1.0));
+  EXPECT_TRUE(selector.isLeavingKeyframe(pose(0, 0, 0), Matrix6d::Zero(), 1.0));
 }
 
 TEST(KeyframeSelector, NamesTheOptionOutOfRange) {

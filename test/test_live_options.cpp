@@ -62,6 +62,7 @@ TEST(LiveOptions, OfKeyframesAreTheCodes) {
   expectRange(&Config::max_translation, &KeyframeSelectorOptions::max_translation);
   expectRange(&Config::max_rotation, &KeyframeSelectorOptions::max_rotation);
   expectRange(&Config::min_entropy_ratio, &KeyframeSelectorOptions::min_entropy_ratio);
+  expectRange(&Config::min_overlap, &KeyframeSelectorOptions::min_overlap);
 }
 
 }  // namespace
