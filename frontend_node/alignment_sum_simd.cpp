@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstddef>
-#include <utility>
 
 #include "planecloud_slam/frontend_node/alignment_kernel_simd.h"
 
@@ -17,161 +15,126 @@ namespace planecloud::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, ReferencePoints::kLanes>;
+using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 
 constexpr std::size_t kWidest = ReferencePoints::kLanes;
-/// Columns whose products are summed: the twist, offset, gain and the residual.
-constexpr std::size_t kColumns = kUnknowns + 1;
-constexpr std::size_t kOffset = 6, kGain = 7, kError = 8;
-constexpr std::size_t kSums = kColumns * (kColumns + 1) / 2;
-/// Points whose rows are in the cache at once.
-constexpr std::size_t kChunk = 128;
-/// Partial sums of this many points are kept in float; a multiple of the chunk.
+constexpr int kTwist = 6;
+/// Sums: 21 twist-twist, 6 twist-error, 6 twist-offset, 6 twist-gain, 5 of brightness, the error.
+constexpr int kSums = 45;
+/// Partial sums of this many points are kept in float.
 constexpr std::size_t kFlush = 2048;
 
-/// Whitened rows of a chunk of points, the square root of their weight in them, so that the normal
-/// equations are products of columns. Column by column; each holds the rows of the grey residuals,
-/// then those of the depth residuals.
-struct ChunkRows {
-  HWY_ALIGN float values[kColumns * 2 * kChunk];
-  std::size_t count = 0;  ///< points
-
-  [[nodiscard]] float* grey(std::size_t column) { return values + column * 2 * count; }
-  [[nodiscard]] float* depth(std::size_t column) { return grey(column) + count; }
-};
-
-/// Jacobian row `q a, (a x ray)` over the twist of a residual that changes by `q a . dp`.
-HWY_INLINE void storeRow(V a1, V a2, V a3, V u, V v, V q, float* first, std::size_t stride) {
+HWY_INLINE void accumulate(V a, V b, float*& sums) {
   const D d;
-  hn::StoreU(hn::Mul(q, a1), d, first);
-  hn::StoreU(hn::Mul(q, a2), d, first + stride);
-  hn::StoreU(hn::Mul(q, a3), d, first + 2 * stride);
-  hn::StoreU(hn::MulSub(v, a3, a2), d, first + 3 * stride);
-  hn::StoreU(hn::NegMulAdd(u, a3, a1), d, first + 4 * stride);
-  hn::StoreU(hn::MulSub(u, a2, hn::Mul(v, a1)), d, first + 5 * stride);
+  hn::Store(hn::MulAdd(a, b, hn::Load(d, sums)), d, sums);
+  sums += kWidest;
+}
+
+HWY_INLINE void accumulate2(V a, V b, V c, V e, float*& sums) {
+  const D d;
+  hn::Store(hn::MulAdd(a, b, hn::MulAdd(c, e, hn::Load(d, sums))), d, sums);
+  sums += kWidest;
+}
+
+/// Jacobian rows `q a, (a x ray)` over the twist of a residual that changes by `q a . dp`.
+HWY_INLINE void storeRow(V a1, V a2, V a3, V u, V v, V q, float* row) {
+  const D d;
+  hn::Store(hn::Mul(q, a1), d, row);
+  hn::Store(hn::Mul(q, a2), d, row + kWidest);
+  hn::Store(hn::Mul(q, a3), d, row + 2 * kWidest);
+  hn::Store(hn::MulSub(v, a3, a2), d, row + 3 * kWidest);
+  hn::Store(hn::NegMulAdd(u, a3, a1), d, row + 4 * kWidest);
+  hn::Store(hn::MulSub(u, a2, hn::Mul(v, a1)), d, row + 5 * kWidest);
 }
 
 /// See scalar::whiten for the algebra.
-HWY_INLINE void fillPoints(const ReferencePoints& points, const ResidualView& residuals,
-                           const Whitening& whitening, std::size_t i, std::size_t at,
-                           ChunkRows& rows) {
+HWY_INLINE void addPoints(const ReferencePoints& points, const ResidualView& residuals,
+                          const Whitening& whitening, std::size_t i, float* sums) {
   const D d;
   const V u = hn::LoadU(d, points.u.data() + i), v = hn::LoadU(d, points.v.data() + i);
   const V q = hn::LoadU(d, points.q.data() + i);
+  const V inverse_grey = hn::Set(d, whitening.inverse_grey);
+  const V inverse_q = hn::Set(d, whitening.inverse_q);
+  const V to_q = hn::Set(d, whitening.slope * whitening.inverse_grey / whitening.inverse_q);
   const V r_q = hn::LoadU(d, residuals.q + i);
-  const V e2 = hn::Mul(r_q, hn::Set(d, whitening.inverse_q));
+  const V e2 = hn::Mul(r_q, inverse_q);
   const V e1 =
       hn::Mul(hn::NegMulAdd(hn::Set(d, whitening.slope), r_q, hn::LoadU(d, residuals.grey + i)),
-              hn::Set(d, whitening.inverse_grey));
+              inverse_grey);
+  const V square = hn::MulAdd(e1, e1, hn::Mul(e2, e2));
   const V nu = hn::Set(d, whitening.nu);
   const V weight = hn::Div(hn::Mul(hn::LoadU(d, residuals.seen + i), hn::Add(nu, hn::Set(d, 2.0F))),
-                           hn::Add(nu, hn::MulAdd(e1, e1, hn::Mul(e2, e2))));
-  const V root = hn::Sqrt(weight);
-  const V scale_grey = hn::Mul(root, hn::Set(d, whitening.inverse_grey));
-  const V scale_q = hn::Mul(root, hn::Set(d, whitening.inverse_q));
-  const V slope = hn::Mul(hn::Set(d, whitening.slope), scale_grey);
+                           hn::Add(nu, square));
+  const V gain = hn::Mul(hn::Sub(hn::LoadU(d, points.grey.data() + i), hn::Set(d, kMiddleGrey)),
+                         hn::Set(d, kInverseGreySpread * whitening.inverse_grey));
 
-  const std::size_t stride = 2 * rows.count;
-  const V b1 = hn::LoadU(d, points.q_u.data() + i), b2 = hn::LoadU(d, points.q_v.data() + i);
-  const V b3 = hn::NegMulAdd(b2, v, hn::NegMulAdd(b1, u, q));
-  const V g1 = hn::LoadU(d, points.grey_u.data() + i), g2 = hn::LoadU(d, points.grey_v.data() + i);
-  const V g3 = hn::Neg(hn::MulAdd(g1, u, hn::Mul(g2, v)));
-  storeRow(hn::MulSub(scale_grey, g1, hn::Mul(slope, b1)),
-           hn::MulSub(scale_grey, g2, hn::Mul(slope, b2)),
-           hn::MulSub(scale_grey, g3, hn::Mul(slope, b3)), u, v, q, rows.grey(0) + at, stride);
-  storeRow(hn::Mul(scale_q, b1), hn::Mul(scale_q, b2), hn::Mul(scale_q, b3), u, v, q,
-           rows.depth(0) + at, stride);
+  HWY_ALIGN float row1[kTwist * kWidest];
+  HWY_ALIGN float row2[kTwist * kWidest];
+  const V b1 = hn::Mul(hn::LoadU(d, points.q_u.data() + i), inverse_q);
+  const V b2 = hn::Mul(hn::LoadU(d, points.q_v.data() + i), inverse_q);
+  const V b3 = hn::NegMulAdd(b2, v, hn::NegMulAdd(b1, u, hn::Mul(q, inverse_q)));
+  const V i1 = hn::Mul(hn::LoadU(d, points.grey_u.data() + i), inverse_grey);
+  const V i2 = hn::Mul(hn::LoadU(d, points.grey_v.data() + i), inverse_grey);
+  const V i3 = hn::Neg(hn::MulAdd(i1, u, hn::Mul(i2, v)));
+  storeRow(hn::NegMulAdd(to_q, b1, i1), hn::NegMulAdd(to_q, b2, i2), hn::NegMulAdd(to_q, b3, i3), u,
+           v, q, row1);
+  storeRow(b1, b2, b3, u, v, q, row2);
 
-  const V centred = hn::Sub(hn::LoadU(d, points.grey.data() + i), hn::Set(d, kMiddleGrey));
-  const V gain = hn::Mul(hn::Mul(centred, hn::Set(d, kInverseGreySpread)), scale_grey);
-  hn::StoreU(scale_grey, d, rows.grey(kOffset) + at);
-  hn::StoreU(gain, d, rows.grey(kGain) + at);
-  hn::StoreU(hn::Mul(root, e1), d, rows.grey(kError) + at);
-  hn::StoreU(hn::Zero(d), d, rows.depth(kOffset) + at);
-  hn::StoreU(hn::Zero(d), d, rows.depth(kGain) + at);
-  hn::StoreU(hn::Mul(root, e2), d, rows.depth(kError) + at);
-}
-
-/// The products of nine columns, 45 in all, in five passes of nine: row k of their triangle has
-/// 9 - k of them and row 9 - k has k, so that every pass keeps its sums in nine registers.
-template <std::size_t kPass>
-struct Pass {
-  static constexpr std::size_t kOther = kPass == 0 ? 0 : kColumns - kPass;
-  static constexpr bool isFirst(std::size_t k) { return k < kColumns - kPass; }
-  static constexpr std::size_t row(std::size_t k) { return isFirst(k) ? kPass : kOther; }
-  static constexpr std::size_t column(std::size_t k) { return isFirst(k) ? kPass + k : k; }
-};
-
-template <std::size_t kPass>
-HWY_INLINE void addProducts(ChunkRows& rows, float* all_sums) {
-  const D d;
-  using P = Pass<kPass>;
-  float* sums = all_sums + kPass * kColumns * kWidest;
-  const auto load = [&](std::size_t k) HWY_ATTR { return hn::Load(d, sums + k * kWidest); };
-  V s0 = load(0), s1 = load(1), s2 = load(2), s3 = load(3), s4 = load(4);
-  V s5 = load(5), s6 = load(6), s7 = load(7), s8 = load(8);
-  const float* first = rows.grey(kPass);
-  const float* other = rows.grey(P::kOther);
-  for (std::size_t i = 0; i < 2 * rows.count; i += hn::Lanes(d)) {
-    const V a = hn::LoadU(d, first + i), b = hn::LoadU(d, other + i);
-    const auto add = [&](V sum, std::size_t k) HWY_ATTR {
-      return hn::MulAdd(P::isFirst(k) ? a : b, hn::LoadU(d, rows.grey(P::column(k)) + i), sum);
-    };
-    s0 = add(s0, 0), s1 = add(s1, 1), s2 = add(s2, 2), s3 = add(s3, 3), s4 = add(s4, 4);
-    s5 = add(s5, 5), s6 = add(s6, 6), s7 = add(s7, 7), s8 = add(s8, 8);
+  const V weighted_e1 = hn::Mul(weight, e1), weighted_e2 = hn::Mul(weight, e2);
+  const V weighted_offset = hn::Mul(weight, inverse_grey), weighted_gain = hn::Mul(weight, gain);
+  for (int r = 0; r < kTwist; ++r) {
+    const V at1 = hn::Load(d, row1 + r * kWidest), at2 = hn::Load(d, row2 + r * kWidest);
+    const V weighted1 = hn::Mul(weight, at1), weighted2 = hn::Mul(weight, at2);
+    for (int c = r; c < kTwist; ++c) {
+      accumulate2(weighted1, hn::Load(d, row1 + c * kWidest), weighted2,
+                  hn::Load(d, row2 + c * kWidest), sums);
+    }
+    accumulate2(weighted_e1, at1, weighted_e2, at2, sums);
+    accumulate(weighted_offset, at1, sums);
+    accumulate(weighted_gain, at1, sums);
   }
-  const auto store = [&](V sum, std::size_t k) HWY_ATTR { hn::Store(sum, d, sums + k * kWidest); };
-  store(s0, 0), store(s1, 1), store(s2, 2), store(s3, 3), store(s4, 4);
-  store(s5, 5), store(s6, 6), store(s7, 7), store(s8, 8);
+  accumulate(weighted_offset, inverse_grey, sums);
+  accumulate(weighted_offset, gain, sums);
+  accumulate(weighted_gain, gain, sums);
+  accumulate(weighted_e1, inverse_grey, sums);
+  accumulate(weighted_e1, gain, sums);
+  accumulate(weight, square, sums);
 }
 
-void addEntry(std::size_t row, std::size_t column, double sum, NormalEquations& equations) {
-  const auto r = static_cast<Eigen::Index>(row);
-  if (column < kError) {
-    equations.matrix(r, static_cast<Eigen::Index>(column)) += sum;
-  } else if (row < kError) {
-    equations.vector(r) += sum;
-  } else {
-    equations.error += sum;
-  }
-}
-
-/// Adds the float sums of one pass to `equations` and clears them.
-template <std::size_t kPass>
-void flushPass(float* all_sums, NormalEquations& equations) {
-  for (std::size_t k = 0; k < kColumns; ++k) {
-    float* lanes = all_sums + (kPass * kColumns + k) * kWidest;
+/// Adds the float sums to `equations` and clears them.
+void flush(float* sums, NormalEquations& equations) {
+  const auto next = [&sums] {
     double sum = 0.0;
-    for (std::size_t lane = 0; lane < kWidest; ++lane) sum += static_cast<double>(lanes[lane]);
-    std::fill(lanes, lanes + kWidest, 0.0F);
-    addEntry(Pass<kPass>::row(k), Pass<kPass>::column(k), sum, equations);
+    for (std::size_t lane = 0; lane < kWidest; ++lane) sum += static_cast<double>(sums[lane]);
+    std::fill(sums, sums + kWidest, 0.0F);
+    sums += kWidest;
+    return sum;
+  };
+  for (int row = 0; row < kTwist; ++row) {
+    for (int column = row; column < kTwist; ++column) equations.matrix(row, column) += next();
+    equations.vector(row) += next();
+    equations.matrix(row, 6) += next();
+    equations.matrix(row, 7) += next();
   }
-}
-
-template <std::size_t... kPasses>
-HWY_INLINE void addChunk(ChunkRows& rows, float* sums, std::index_sequence<kPasses...>) {
-  (addProducts<kPasses>(rows, sums), ...);
-}
-
-template <std::size_t... kPasses>
-void flush(float* sums, NormalEquations& equations, std::index_sequence<kPasses...>) {
-  (flushPass<kPasses>(sums, equations), ...);
+  equations.matrix(6, 6) += next();
+  equations.matrix(6, 7) += next();
+  equations.matrix(7, 7) += next();
+  equations.vector(6) += next();
+  equations.vector(7) += next();
+  equations.error += next();
 }
 
 void sum(const ReferencePoints& points, const ResidualView& residuals, const Whitening& whitening,
          NormalEquations& equations) {
-  constexpr std::make_index_sequence<kSums / kColumns> kPasses;
   HWY_ALIGN float sums[kSums * kWidest] = {};
-  ChunkRows rows;
-  for (std::size_t begin = 0; begin < residuals.count; begin += kChunk) {
-    rows.count = std::min(kChunk, residuals.count - begin);
-    for (std::size_t k = 0; k < rows.count; k += hn::Lanes(D())) {
-      fillPoints(points, residuals, whitening, begin + k, k, rows);
+  for (std::size_t begin = 0; begin < residuals.count; begin += kFlush) {
+    const std::size_t end = std::min(begin + kFlush, residuals.count);
+    for (std::size_t i = begin; i < end; i += hn::Lanes(D())) {
+      addPoints(points, residuals, whitening, i, sums);
     }
-    addChunk(rows, sums, kPasses);
-    if ((begin + kChunk) % kFlush == 0) flush(sums, equations, kPasses);
+    flush(sums, equations);
   }
-  flush(sums, equations, kPasses);
 }
 
 }  // namespace planecloud::HWY_NAMESPACE
