@@ -10,9 +10,6 @@
 namespace planecloud {
 namespace {
 
-// See appearance_descriptor.cpp: after the version a byte a cell, low half brightness, high depth.
-constexpr std::size_t kBytes = 241;
-constexpr int kRowsOfBand = 3;
 constexpr int kMostShift = 6;  ///< of a view to the side [columns]
 constexpr int kGreyScale = 5;  ///< of a sum over a band: 1..15 three times to a byte
 constexpr int kDepthScale = 5;
@@ -28,7 +25,7 @@ int difference(const std::uint8_t* a, const std::uint8_t* b, int count) {
 
 AppearanceIndex::Sketch AppearanceIndex::sketch(const std::vector<std::uint8_t>& descriptor) {
   Sketch sketch;
-  sketch.empty = descriptor.size() != kBytes;
+  sketch.empty = descriptor.size() != kAppearanceBytes;
   if (sketch.empty) return sketch;
   for (int column = 0; column < kColumns; ++column) {
     for (int band = 0; band < kBands; ++band) {

@@ -8,6 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include "planecloud_slam/plane_fit/appearance_descriptor.h"
+
 namespace planecloud {
 
 /// The descriptors of all keyframes, coarser: bands of three rows, a byte of brightness and one of
@@ -27,8 +29,9 @@ class AppearanceIndex {
                                            std::size_t count) const;
 
  private:
-  static constexpr int kColumns = 20;
-  static constexpr int kBands = 4;
+  static constexpr int kColumns = kAppearanceColumns;
+  static constexpr int kRowsOfBand = 3;
+  static constexpr int kBands = kAppearanceRows / kRowsOfBand;
 
   /// Column by column, so that views turned against each other compare in one run.
   using Cells = std::array<std::uint8_t, kColumns * kBands>;

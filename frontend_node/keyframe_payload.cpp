@@ -3,6 +3,7 @@
 #include "planecloud_slam/frontend_node/keyframe_payload.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace planecloud {
 namespace {

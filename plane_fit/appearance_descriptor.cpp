@@ -11,11 +11,9 @@ namespace planecloud {
 namespace {
 
 // All of this is the meaning of version 1 of the bytes: change anything and the version changes.
-// After the version, one byte a cell, row by row: low half brightness, high half depth.
 constexpr std::uint8_t kDescriptorVersion = 1;
-constexpr int kColumns = 20;
-constexpr int kRows = 12;
-constexpr std::size_t kBytes = 1 + static_cast<std::size_t>(kColumns * kRows);
+constexpr int kColumns = kAppearanceColumns;
+constexpr int kRows = kAppearanceRows;
 constexpr double kLevelsPerDeviation = 3.0;
 constexpr int kGreyMiddle = 8;          // brightness is 1..15 around it
 constexpr int kDepthLevels = 15;        // depth is 1..15, 0: none
@@ -91,7 +89,7 @@ Image<int> depthLevels(const ImageView<float>& depth) {
 }
 
 bool isWellFormed(const std::vector<std::uint8_t>& bytes) {
-  return bytes.size() == kBytes && bytes[0] == kDescriptorVersion &&
+  return bytes.size() == kAppearanceBytes && bytes[0] == kDescriptorVersion &&
          std::all_of(bytes.begin() + 1, bytes.end(), [](std::uint8_t b) { return (b & 15) != 0; });
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -9,6 +10,12 @@
 #include "planecloud_slam/plane_fit/image_view.h"
 
 namespace planecloud {
+
+/// The grid of the descriptor; after a byte of version it has a byte a cell, row by row: low half
+/// brightness, high half depth.
+inline constexpr int kAppearanceColumns = 20;
+inline constexpr int kAppearanceRows = 12;
+inline constexpr std::size_t kAppearanceBytes = 1 + kAppearanceColumns * kAppearanceRows;
 
 /// A compact description of what a keyframe looks like, for recognising places without any
 /// position: brightness and logarithmic depth on a grid of 20 x 12 cells, four bits each, 241

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <string>
@@ -83,15 +82,9 @@ std::vector<int> differentCounts(ImageView<float> depth) {
     }
   }
   std::vector<int> counts;
-  const std::uint8_t* const end = occurs.data() + occurs.size();
-  const std::uint8_t* next = occurs.data();  // of 0, no depth
-  const auto find = [&] {
-    ++next;
-    next = static_cast<const std::uint8_t*>(
-        std::memchr(next, 1, static_cast<std::size_t>(end - next)));
-    return next != nullptr;
-  };
-  while (find()) counts.push_back(static_cast<int>(next - occurs.data()));
+  for (int count = 1; count <= kMaxCount; ++count) {
+    if (occurs[static_cast<std::size_t>(count)] != 0) counts.push_back(count);
+  }
   return counts;
 }
 

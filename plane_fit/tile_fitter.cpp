@@ -27,6 +27,11 @@ int depthPower(AcceptanceRule rule) {
   return 2;
 }
 
+/// Mean error of inverse depth over inverse depth, for noise, about `depth` [m].
+float relativeError(const NodePlane& plane, float depth) {
+  return kMeanOverRms * std::abs(plane.rms) * depth;
+}
+
 Eigen::Vector3f toVector(const NodePlane& plane) { return {plane.alpha, plane.beta, plane.gamma}; }
 
 }  // namespace
@@ -59,15 +64,12 @@ TileFit TileFitter::sample(const QuadtreeNode& node) const {
 }
 
 TileFit TileFitter::estimate(const QuadtreeNode& node) const {
-  return estimate(node, pyramid_.regress(node));
-}
-
-TileFit TileFitter::estimate(const QuadtreeNode& node, const NodePlane& plane) const {
+  const NodePlane plane = pyramid_.regress(node);
   TileFit fit;
   fit.plane = toVector(plane);
   fit.count = pyramid_.count(node);
   const float depth = 1.0F / pyramid_.meanInverseDepth(node);
-  const float error = kMeanOverRms * std::abs(plane.rms) * depth;
+  const float error = relativeError(plane, depth);
   fit.depth_sum = fit.count * error * depth;
   fit.point_plane_sum = fit.count * error * planeDistance(node, fit.plane);
   return fit;
@@ -80,7 +82,7 @@ std::optional<float> TileFitter::distortion(const QuadtreeNode& node) const {
   const NodePlane plane = pyramid_.regress(node);
   if (!isInFront(node, plane)) return std::nullopt;
   const float depth = 1.0F / pyramid_.meanInverseDepth(node);
-  const float error = kMeanOverRms * std::abs(plane.rms) * depth;
+  const float error = relativeError(plane, depth);
   const float scale = options_.along_ray_test ? depth : planeDistance(node, toVector(plane));
   return static_cast<float>(count) * error * scale / allowedError(depth);
 }

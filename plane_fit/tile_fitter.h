@@ -70,7 +70,6 @@ class TileFitter {
                                                const Eigen::Vector2f& origin, double count,
                                                float mean_depth) const;
   [[nodiscard]] float allowedError(float depth) const;
-  [[nodiscard]] TileFit estimate(const QuadtreeNode& node, const NodePlane& plane) const;
   /// Distance of a node's plane from the origin [m].
   [[nodiscard]] float planeDistance(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
 

@@ -156,9 +156,8 @@ std::vector<TileMerger::Verdict> TileMerger::weigh(int step) const {
   return verdicts;
 }
 
-std::vector<std::size_t> TileMerger::regionsBelow(int price,
+std::vector<std::size_t> TileMerger::regionsBelow(const std::vector<Verdict>& verdicts,
                                                   const std::vector<Verdict>& lower) const {
-  const std::vector<Verdict> verdicts = weigh(price);
   std::vector<std::size_t> regions;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     if (lower[i].is_wanted && !verdicts[i].is_wanted) regions.push_back(i);
@@ -167,10 +166,6 @@ std::vector<std::size_t> TileMerger::regionsBelow(int price,
   std::stable_sort(regions.begin(), regions.end(),
                    [&](std::size_t a, std::size_t b) { return flatness(a) < flatness(b); });
   return regions;
-}
-
-int TileMerger::extraRegions(int price) const {
-  return static_cast<int>(regionsBelow(price, weigh(price - 1)).size());
 }
 
 void TileMerger::collect(std::vector<Verdict> verdicts, Version& version) const {
@@ -190,16 +185,9 @@ void TileMerger::collect(std::vector<Verdict> verdicts, Version& version) const 
   }
 }
 
-TileMerger::Version TileMerger::at(int price, int extra) const {
+TileMerger::Version TileMerger::at(int price) const {
   Version version;
   collect(weigh(price), version);
-  if (extra == 0) return version;
-  std::vector<Verdict> lower = weigh(price - 1);
-  std::vector<std::size_t> regions = regionsBelow(price, lower);
-  regions.resize(std::min(regions.size(), static_cast<std::size_t>(extra)));
-  for (Verdict& verdict : lower) verdict.is_wanted = false;
-  for (const std::size_t region : regions) lower[region].is_wanted = true;
-  collect(std::move(lower), version);
   return version;
 }
 
@@ -210,13 +198,24 @@ TileMerger::Version TileMerger::largest(const std::function<bool(const Version&)
     const int middle = (refused + accepted) / 2;
     (fits(at(middle)) ? accepted : refused) = middle;
   }
-  int fitting = 0;
-  int too_many = extraRegions(accepted) + 1;
+  const Version cheapest = at(accepted);
+  std::vector<Verdict> lower = weigh(accepted - 1);
+  const std::vector<std::size_t> extra = regionsBelow(weigh(accepted), lower);
+  for (Verdict& verdict : lower) verdict.is_wanted = false;
+  const auto with = [&](std::size_t count) {
+    Version version = cheapest;
+    std::vector<Verdict> verdicts = lower;
+    for (std::size_t i = 0; i < count; ++i) verdicts[extra[i]].is_wanted = true;
+    collect(std::move(verdicts), version);
+    return version;
+  };
+  std::size_t fitting = 0;
+  std::size_t too_many = extra.size() + 1;
   while (too_many - fitting > 1) {
-    const int middle = (fitting + too_many) / 2;
-    (fits(at(accepted, middle)) ? fitting : too_many) = middle;
+    const std::size_t middle = (fitting + too_many) / 2;
+    (fits(with(middle)) ? fitting : too_many) = middle;
   }
-  return at(accepted, fitting);
+  return with(fitting);
 }
 
 PlaneCloudStatistics TileMerger::reduce(PlaneCloudStatistics statistics,

@@ -31,13 +31,11 @@ class TileMerger {
     double inverse_depth = 0.0;  ///< summed over the pixels [1/m]
     double distortion = 0.0;     ///< added by merging, summed over the pixels [1/m^2]
   };
-  /// The cloud at price [0, kPrices] of a bit, ascending: empty at the last. `extra`: as many of
-  /// the regions that only the next lower price covers are there as well, the flattest first.
-  [[nodiscard]] Version at(int price, int extra = 0) const;
-  /// How many regions the next lower price covers beyond those of `price` (> 0).
-  [[nodiscard]] int extraRegions(int price) const;
+  /// The cloud at price [0, kPrices] of a bit, ascending: empty at the last.
+  [[nodiscard]] Version at(int price) const;
 
-  /// The largest version that `fits`, by bisection: never gets smaller when more fits.
+  /// The largest version that `fits`, by bisection: never gets smaller when more fits. Beside what
+  /// its price covers it has some of what only the next lower price does, the flattest first.
   [[nodiscard]] Version largest(const std::function<bool(const Version&)>& fits) const;
   /// `statistics` of the whole cloud made those of `version`.
   [[nodiscard]] PlaneCloudStatistics reduce(PlaneCloudStatistics statistics,
@@ -72,8 +70,8 @@ class TileMerger {
   [[nodiscard]] bool merge(Region& region) const;
   /// Verdicts on all regions at a price [0, kPrices); those that fill no other are wanted or not.
   [[nodiscard]] std::vector<Verdict> weigh(int price) const;
-  /// Outermost regions wanted at the next lower price alone, the flattest first.
-  [[nodiscard]] std::vector<std::size_t> regionsBelow(int price,
+  /// Outermost regions wanted by `lower` alone, the verdicts at a lower price, the flattest first.
+  [[nodiscard]] std::vector<std::size_t> regionsBelow(const std::vector<Verdict>& verdicts,
                                                       const std::vector<Verdict>& lower) const;
   /// Adds the tiles of wanted regions.
   void collect(std::vector<Verdict> verdicts, Version& version) const;

@@ -9,6 +9,7 @@
 #include "frame_set.h"
 #include "planecloud_slam/frontend_node/keyframe_payload.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
+#include "quantile.h"
 
 /// Are budgets kept, and is a larger one always worth it? Bytes of planes and texture against byte
 /// budgets, wall time of fits against time budgets (run something else beside it).
@@ -22,11 +23,6 @@ namespace {
 /// Coverage of one frame may fall by this from one time budget to the next: the fit is cut off at
 /// another tile every time.
 constexpr double kTimeJitter = 0.02;
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 double mean(const std::vector<double>& values) {
   double sum = 0.0;

@@ -14,6 +14,7 @@
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 #include "planecloud_slam/plane_fit/reconstruction.h"
 #include "planecloud_slam/plane_fit/tile_kernels.h"
+#include "quantile.h"
 #include "recorded_depth.h"
 
 /// Fit, encode and decode on recorded depth: milliseconds, planes, errors and bytes; then the times
@@ -50,11 +51,6 @@ std::vector<Setting> settings() {
 
 double milliseconds(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
 struct Totals {

@@ -38,9 +38,6 @@ struct TrackingRun {
 
 /// Way along a trajectory [m].
 [[nodiscard]] double pathLength(const Trajectory& trajectory);
-/// CPU time of this thread [s].
-[[nodiscard]] double threadSeconds();
-[[nodiscard]] double quantile(std::vector<double> values, double share);
 
 using FrameSets = std::vector<std::shared_ptr<const FrameSet>>;
 

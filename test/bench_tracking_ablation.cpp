@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "bench_tracking.h"
+#include "quantile.h"
 
 namespace planecloud::bench {
 namespace {

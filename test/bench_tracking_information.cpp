@@ -4,6 +4,7 @@
 #include <map>
 
 #include "bench_tracking.h"
+#include "quantile.h"
 
 namespace planecloud::bench {
 namespace {

@@ -6,6 +6,8 @@
 
 #include "bench_tracking.h"
 #include "planecloud_slam/frontend_node/rectifier.h"
+#include "quantile.h"
+#include "thread_time.h"
 
 namespace planecloud::bench {
 namespace {
@@ -37,7 +39,7 @@ TrackingRun trackWithPeer(const FrameSet& set) {
     FrameResult result;
     result.stamp = frame->stamp;
     result.status = TrackingStatus::kTracked;
-    const double start = threadSeconds();
+    const double start = threadTime();
     cv::Mat motion;
     if (previous && odometry->compute(current, previous, motion)) {
       Eigen::Isometry3d T_previous_current = Eigen::Isometry3d::Identity();
@@ -50,7 +52,7 @@ TrackingRun trackWithPeer(const FrameSet& set) {
     } else if (previous) {
       result.status = TrackingStatus::kLost;
     }
-    if (previous) run.track_times.push_back(threadSeconds() - start);
+    if (previous) run.track_times.push_back(threadTime() - start);
     result.T_odom_camera = pose;
     run.frames.push_back(result);
     previous = current;

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <time.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include "planecloud_slam/rosbags/keyframe_wire_size.h"
 #include "planecloud_slam/rosbags/replay_run.h"
 #include "planecloud_slam/rosbags/replay_trajectories.h"
+#include "thread_time.h"
 
 namespace planecloud::bench {
 namespace {
@@ -20,28 +19,15 @@ constexpr std::uint64_t kSession = 1;
 /// Fits and sends what is completed.
 void compressCompleted(Frontend& frontend, KeyframeCompressor& compressor, TrackingRun& run) {
   for (CompletedKeyframe& completed : frontend.takeCompleted()) {
-    const double start = threadSeconds();
+    const double start = threadTime();
     Keyframe keyframe = asTravelled(compressor.compress(std::move(completed)));
-    run.keyframe_time += threadSeconds() - start;
+    run.keyframe_time += threadTime() - start;
     run.sending_bytes += static_cast<double>(keyframeWireSize(keyframe));
     run.keyframes.push_back(std::move(keyframe));
   }
 }
 
 }  // namespace
-
-double threadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 double pathLength(const Trajectory& trajectory) {
   double length = 0.0;
@@ -62,10 +48,10 @@ TrackingRun track(const FrameSet& set, const FrontendOptions& options, bool use_
   TrackingRun run;
   for (std::size_t i = 0; i < set.frames.size(); ++i) {
     const bool has_wheels = use_wheels && i < set.wheels.size();
-    const double start = threadSeconds();
+    const double start = threadTime();
     run.frames.push_back(frontend.track(
         *set.frames[i], has_wheels ? set.wheels[i] : std::optional<Eigen::Isometry3d>()));
-    run.track_times.push_back(threadSeconds() - start);
+    run.track_times.push_back(threadTime() - start);
     compressCompleted(frontend, compressor, run);
   }
   frontend.finish();

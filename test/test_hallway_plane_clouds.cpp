@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "planecloud_slam/plane_fit/fitted_depth.h"
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
@@ -21,13 +20,9 @@ void expectDecodedAsEncoded(double duration) {
   HallwayRecording recording(options);
   QuadtreeFitter fitter(std::make_shared<const Camera>(recording.camera()), {});
   CodecOptions codec;
-  while (recording.next()) {
+  while (const std::optional<RgbdFrame> frame = recording.next()) {
     codec.mask = !codec.mask;
-    const Image<std::uint16_t>& millimetres = recording.depthMillimetres();
-    Image<float> depth(millimetres.width(), millimetres.height());
-    std::transform(millimetres.begin(), millimetres.end(), depth.begin(),
-                   [](std::uint16_t z) { return 1e-3F * static_cast<float>(z); });
-    const FittedDepth fitted{fitter.fit(depth.view()), depth.view(), {}};
+    const FittedDepth fitted{fitter.fit(frame->depth.view()), frame->depth.view(), {}};
     const EncodedPlaneCloud encoded = encode(fitted, codec);
     const PlaneCloud decoded = decode(encoded);
     ASSERT_EQ(decoded.tiles.size(), fitted.cloud.tiles.size());
