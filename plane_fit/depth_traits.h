@@ -20,6 +20,8 @@ struct DepthTraits;
 /// 32FC1: metres; NaN, infinite or not positive means none.
 template <>
 struct DepthTraits<float> {
+  /// Depth [m]; 0 where there is none.
+  [[nodiscard]] static float metres(float depth) { return hasDepth(depth) ? depth : 0.0F; }
   /// Inverse depth [1/m]; 0 where there is none.
   [[nodiscard]] static float inverse(float depth) { return hasDepth(depth) ? 1.0F / depth : 0.0F; }
 };
@@ -27,6 +29,10 @@ struct DepthTraits<float> {
 /// 16UC1: millimetres; 0 means none.
 template <>
 struct DepthTraits<std::uint16_t> {
+  /// Depth [m]; 0 where there is none.
+  [[nodiscard]] static float metres(std::uint16_t depth) {
+    return depth >= 50 ? static_cast<float>(depth) * 0.001F : 0.0F;
+  }
   /// Inverse depth [1/m]; 0 where there is none.
   [[nodiscard]] static float inverse(std::uint16_t depth) {
     return depth >= 50 ? 1000.0F / static_cast<float>(depth) : 0.0F;

@@ -8,11 +8,19 @@
 #include <type_traits>
 #include <utility>
 
+#include "planecloud_slam/plane_fit/position_regression.h"
+
 namespace planecloud {
 namespace {
 
-/// Rows of which one is looked at where errors are only reported.
-constexpr int kSampledRows = 4;
+/// Cells with longer sides are summed pixel by pixel: the tangents of a strong lens are within 1e-5
+/// of an affine function over 8 pixels.
+constexpr int kMaxAffineSide = 8;
+/// Where errors are only reported, one row in so many is looked at or fewer, at most so many rows,
+/// and of wide ones only a part: what costs is memory.
+constexpr int kMinRowStep = 4;
+constexpr int kMostSampledRows = 2;
+constexpr int kSampledColumns = 16;
 
 const Camera& required(const std::shared_ptr<const Camera>& camera) {
   if (!camera) throw std::invalid_argument("the plane fitter needs a camera, got none");
@@ -22,24 +30,28 @@ const Camera& required(const std::shared_ptr<const Camera>& camera) {
 }  // namespace
 
 MomentPyramid::MomentPyramid(const std::shared_ptr<const Camera>& camera,
-                             const QuadtreeLayout& layout, const TileKernels& kernels)
+                             const QuadtreeLayout& layout, const TileKernels& kernels,
+                             const DistortionRule& rule)
     : kernels_(kernels),
       grid_(layout, required(camera).width(), required(camera).height()),
       tables_(*camera, grid_),
-      uniform_cells_(layout.initial_width % grid_.cellsPerSide(0) == 0),
-      inverse_depth_(tables_.size(), 0.0F) {
-  for (std::vector<float>* sums :
-       {&columns_n_, &columns_q_, &columns_qu_, &columns_qv_, &columns_qq_}) {
-    sums->assign(static_cast<std::size_t>(tables_.stride()), 0.0F);
+      rule_(rule),
+      levels_(static_cast<std::size_t>(grid_.levels())) {
+  for (std::vector<float>* sums : {&columns_n_, &columns_q_, &columns_qy_, &columns_qq_}) {
+    sums->resize(static_cast<std::size_t>(grid_.width()));
   }
-  levels_.resize(static_cast<std::size_t>(grid_.levels()));
+  const TileRect cell = grid_.rect({grid_.levels() - 1, 0, 0});
+  small_cells_ = std::max(cell.width, cell.height) <= kMaxAffineSide;
+  while (fours_ < grid_.cellColumns() && grid_.cellX(fours_ + 1) == 4 * (fours_ + 1)) ++fours_;
   for (int i = 0; i < grid_.levels(); ++i) {
     Level& level = levels_[static_cast<std::size_t>(i)];
     const std::size_t nodes = tables_.level(i).sums.size();
     level.counts.resize(nodes);
     level.depth.resize(nodes);
     level.tangents.resize(nodes);
-    level.planes.resize(nodes);
+    if (i + 1 < grid_.levels()) level.planes.resize(nodes);
+    level.distortions.resize(nodes);
+    level.fills.resize(nodes);
   }
 }
 
@@ -53,69 +65,55 @@ bool MomentPyramid::read(ImageView<std::uint16_t> depth, const std::function<boo
 
 template <typename Pixel>
 bool MomentPyramid::readPixels(ImageView<Pixel> depth, const std::function<bool()>& give_up) {
+  depth_ = depth;
   for (int row = 0; row < grid_.cellRows(); ++row) {
     if (give_up && give_up()) return false;
-    sumStrip(depth, row);
+    const int y = grid_.cellY(row);
+    const TileRect strip{0, y, grid_.width(), grid_.cellY(row + 1) - y};
+    kernels_.of<Pixel>().sum_columns(block(depth, strip), columns());
     sumCells(row);
-    sumHoles(row);
+    sumPixels(depth, row);
   }
   for (int parent = grid_.levels() - 1; parent-- > 0;) merge(parent);
   return true;
 }
 
-template <typename Pixel>
-void MomentPyramid::sumStrip(ImageView<Pixel> depth, int row) {
-  const int y = grid_.cellY(row);
-  DepthStrip<Pixel> strip;
-  strip.depth = depth.row(y);
-  strip.depth_stride = depth.stride();
-  strip.tangents = tables_.from(0, y);
-  strip.inverse_depth = &inverse_depth_[tables_.offset(0, y)];
-  strip.width = grid_.width();
-  strip.rows = grid_.cellY(row + 1) - y;
-  const ColumnSums sums{columns_n_.data(), columns_q_.data(), columns_qu_.data(),
-                        columns_qv_.data(), columns_qq_.data()};
-  if constexpr (std::is_same_v<Pixel, float>) {
-    kernels_.sum_columns_f32(strip, sums);
-  } else {
-    kernels_.sum_columns_u16(strip, sums);
-  }
+ColumnSums MomentPyramid::columns() {
+  return {columns_n_.data(), columns_q_.data(), columns_qy_.data(), columns_qq_.data()};
 }
 
 void MomentPyramid::sumCells(int row) {
   Level& cells = levels_.back();
-  const ColumnSums sums{columns_n_.data(), columns_q_.data(), columns_qu_.data(),
-                        columns_qv_.data(), columns_qq_.data()};
   const std::size_t first = index({grid_.levels() - 1, 0, row});
-  const int cell_width = grid_.cellX(1);
-  const int uniform = uniform_cells_ ? grid_.width() / cell_width : 0;
-  kernels_.sum_cells(sums, cell_width, uniform, &cells.depth[first], &cells.counts[first]);
-  for (int column = uniform; column < grid_.cellColumns(); ++column) {
-    DepthSums sum;
-    float n = 0.0F;
-    for (auto x = static_cast<std::size_t>(grid_.cellX(column));
-         x < static_cast<std::size_t>(grid_.cellX(column + 1)); ++x) {
-      n += columns_n_[x];
-      sum.q += columns_q_[x];
-      sum.qu += columns_qu_[x];
-      sum.qv += columns_qv_[x];
-      sum.qq += columns_qq_[x];
-    }
-    cells.depth[first + static_cast<std::size_t>(column)] = sum;
-    cells.counts[first + static_cast<std::size_t>(column)] = n;
-  }
-  kernels_.regress(&cells.depth[first], tables_.level(grid_.levels() - 1).full.from(first),
-                   static_cast<std::size_t>(grid_.cellColumns()), &cells.planes[first]);
+  const int height = grid_.cellY(row + 1) - grid_.cellY(row);
+  const CellRow cell_row{grid_.cellEdges(), grid_.cellColumns(), fours_, height,
+                         tables_.cells().from(first)};
+  kernels_.sum_cells(
+      columns(), cell_row, rule_,
+      {&cells.depth[first], &cells.counts[first], &cells.fills[first], &cells.distortions[first]});
 }
 
-void MomentPyramid::sumHoles(int row) {
+template <typename Pixel>
+void MomentPyramid::sumPixels(ImageView<Pixel> depth, int row) {
+  const int level = grid_.levels() - 1;
   Level& cells = levels_.back();
-  const std::vector<float>& full = tables_.level(grid_.levels() - 1).full.n;
-  std::size_t i = index({grid_.levels() - 1, 0, row});
+  const PixelKernels<Pixel>& kernels = kernels_.of<Pixel>();
+  const std::vector<TangentSums>& full_sums = tables_.level(level).sums;
+  std::size_t i = index({level, 0, row});
   for (int column = 0; column < grid_.cellColumns(); ++column, ++i) {
-    if (cells.counts[i] == full[i] || cells.counts[i] == 0.0F) continue;
-    cells.tangents[i] =
-        kernels_.sum_tangents(pixels(grid_.rect({grid_.levels() - 1, column, row})));
+    const bool is_full = cells.fills[i] == Fill::kAll;
+    if ((is_full && small_cells_) || cells.fills[i] == Fill::kNothing) continue;
+    const TileRect rect = grid_.rect({level, column, row});
+    const DepthBlock<Pixel> pixels = block(depth, rect);
+    if (small_cells_) {
+      cells.tangents[i] = sumTangents(kernels.sum_positions(pixels), tables_.cells().from(i));
+    } else {
+      const BlockSums sums = kernels.sum_block(pixels, tables_.from(rect.x, rect.y));
+      cells.depth[i].qu = sums.qu;
+      cells.depth[i].qv = sums.qv;
+      cells.tangents[i] = is_full ? full_sums[i] : sums.tangents;
+    }
+    cells.distortions[i] = -1.0F;  // few are ever asked about
   }
 }
 
@@ -124,6 +122,7 @@ void MomentPyramid::merge(int parent_level) {
   const Level& children = levels_[static_cast<std::size_t>(parent_level) + 1];
   const std::vector<float>& full = tables_.level(parent_level).full.n;
   const auto child_columns = static_cast<std::size_t>(grid_.columns(parent_level + 1));
+  holes_.clear();
   std::size_t parent = 0;
   for (std::size_t row = 0; parent < full.size(); row += 2) {
     for (std::size_t column = 0; column < child_columns; column += 2, ++parent) {
@@ -138,51 +137,102 @@ void MomentPyramid::merge(int parent_level) {
       }
       parents.depth[parent] = sum;
       parents.counts[parent] = n;
-      if (n == full[parent] || n == 0.0F) continue;
+      parents.fills[parent] = n == 0.0F           ? Fill::kNothing
+                              : n == full[parent] ? Fill::kAll
+                                                  : Fill::kPart;
+      if (parents.fills[parent] != Fill::kPart) continue;
       parents.tangents[parent] = mergeTangents(parent_level + 1, child);
+      holes_.add(parent, moments(parent_level, parent));
     }
   }
-  kernels_.regress(parents.depth.data(), tables_.level(parent_level).full.from(0), full.size(),
-                   parents.planes.data());
+  kernels_.regress(parents.depth.data(), tables_.level(parent_level).full.from(0), rule_,
+                   full.size(), {parents.planes.data(), parents.distortions.data()});
+  regressHoles(parent_level);
+}
+
+void MomentPyramid::regressHoles(int level) {
+  Level& nodes = levels_[static_cast<std::size_t>(level)];
+  const FullNodes& full = tables_.level(level).full;
+  holes_.regress(kernels_);
+  for (std::size_t i = 0; i < holes_.size(); ++i) {
+    const std::size_t node = holes_.node(i);
+    NodePlane plane = holes_.plane(i);
+    const float n = nodes.counts[node];
+    float distortion = rule_.factor * n * plane.rms;
+    for (int power = 0; power < rule_.depth_power; ++power) distortion *= n / nodes.depth[node].q;
+    const float lowest = plane.alpha * full.mean_u[node] + plane.beta * full.mean_v[node] +
+                         plane.gamma - std::abs(plane.alpha) * full.reach_u[node] -
+                         std::abs(plane.beta) * full.reach_v[node];
+    if (lowest < kMinPlaneInverseDepth) {
+      plane.rms = -plane.rms;
+      distortion = -1.0F;
+    }
+    nodes.distortions[node] = distortion;
+    nodes.planes[node] = plane;
+  }
+}
+
+NodePlane MomentPyramid::regressCell(const QuadtreeNode& node) const {
+  const std::size_t i = index(node);
+  NodePlane plane;
+  if (small_cells_) {
+    const TileRect rect = grid_.rect(node);
+    const PositionSums positions = isFull(node) ? allPositions(rect) : sumPositions(rect);
+    plane = regressPositions(positions, levels_.back().depth[i], tables_.cells().from(i), rect);
+  } else {
+    const TileMoments sums = moments(node);
+    const Eigen::Vector3d fit = regressInverseDepth(sums);
+    plane.alpha = static_cast<float>(fit.x());
+    plane.beta = static_cast<float>(fit.y());
+    plane.gamma = static_cast<float>(fit.z());
+    plane.rms = -static_cast<float>(rootMeanSquare(sums, fit));
+  }
+  return plane;
+}
+
+PositionSums MomentPyramid::sumPositions(const TileRect& rect) const {
+  return std::visit(
+      [&](const auto& depth) {
+        const auto pixels = block(depth, rect);
+        return kernelsFor(pixels).sum_positions(pixels);
+      },
+      depth_);
 }
 
 TangentSums MomentPyramid::mergeTangents(int level, const std::array<std::size_t, 4>& nodes) const {
   const Level& children = levels_[static_cast<std::size_t>(level)];
-  const TangentTables::Level& tables = tables_.level(level);
+  const std::vector<TangentSums>& full = tables_.level(level).sums;
   TangentSums sums;
   for (const std::size_t node : nodes) {
-    if (children.counts[node] == 0.0F) continue;
-    const bool full = children.counts[node] == tables.full.n[node];
-    sums += full ? tables.sums[node] : children.tangents[node];
+    if (children.fills[node] == Fill::kNothing) continue;
+    sums += children.fills[node] == Fill::kAll ? full[node] : children.tangents[node];
   }
   return sums;
 }
 
 std::optional<bool> MomentPyramid::hasDepthAtCorners(const QuadtreeNode& node, int window) const {
   const int side = grid_.cellsPerSide(node.level);
-  const std::vector<float>& counts = levels_.back().counts;
-  const std::vector<float>& full = tables_.level(grid_.levels() - 1).full.n;
+  const Level& cells = levels_.back();
+  const std::vector<float>& areas = tables_.level(grid_.levels() - 1).full.n;
   const auto window_area = static_cast<float>(window * window);
   for (const int row : {node.row * side, (node.row + 1) * side - 1}) {
     for (const int column : {node.column * side, (node.column + 1) * side - 1}) {
       const std::size_t cell = index({grid_.levels() - 1, column, row});
-      const bool is_full = counts[cell] == full[cell] && full[cell] > 0.0F;
-      if (is_full) continue;
-      if (full[cell] != window_area || side == 1) return std::nullopt;
-      if (counts[cell] == 0.0F) return false;
+      if (cells.fills[cell] == Fill::kAll) continue;
+      if (areas[cell] != window_area || side == 1) return std::nullopt;
+      if (cells.fills[cell] == Fill::kNothing) return false;
     }
   }
   return true;
 }
 
-TileMoments MomentPyramid::moments(const QuadtreeNode& node) const {
-  const Level& nodes = level(node);
-  const std::size_t i = index(node);
+TileMoments MomentPyramid::moments(int level, std::size_t i) const {
+  const Level& nodes = levels_[static_cast<std::size_t>(level)];
   TileMoments moments;
   moments.n = nodes.counts[i];
-  if (moments.n > 0.0) {
-    const TangentSums& tangents =
-        isFull(node) ? tables_.level(node.level).sums[i] : nodes.tangents[i];
+  if (nodes.fills[i] != Fill::kNothing) {
+    const bool is_full = nodes.fills[i] == Fill::kAll;
+    const TangentSums& tangents = is_full ? tables_.level(level).sums[i] : nodes.tangents[i];
     moments.u = tangents.u;
     moments.v = tangents.v;
     moments.uu = tangents.uu;
@@ -196,43 +246,51 @@ TileMoments MomentPyramid::moments(const QuadtreeNode& node) const {
   return moments;
 }
 
-NodePlane MomentPyramid::regressWithHoles(const QuadtreeNode& node) const {
-  const TileMoments sums = moments(node);
-  const Eigen::Vector3d plane = regressInverseDepth(sums);
-  // Residuals of a regression are orthogonal to it.
-  const double explained = plane.dot(Eigen::Vector3d(sums.qu, sums.qv, sums.q));
-  NodePlane result;
-  result.alpha = static_cast<float>(plane.x());
-  result.beta = static_cast<float>(plane.y());
-  result.gamma = static_cast<float>(plane.z());
-  const float rms = std::sqrt(static_cast<float>(std::max(0.0, (sums.qq - explained) / sums.n)));
-  const FullNodeRows full = tables_.level(node.level).full.from(index(node));
-  const float lowest = result.alpha * *full.mean_u + result.beta * *full.mean_v + result.gamma -
-                       std::abs(result.alpha) * *full.reach_u -
-                       std::abs(result.beta) * *full.reach_v;
-  result.rms = lowest >= kMinPlaneInverseDepth ? rms : -rms;
-  return result;
+bool MomentPyramid::hasDepth(const TileRect& rect) const {
+  const auto look = [&](const auto& depth) {
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+      for (int x = rect.x; x < rect.x + rect.width; ++x) {
+        if (inverse(depth(x, y)) > 0.0F) return true;
+      }
+    }
+    return false;
+  };
+  return std::visit(look, depth_);
 }
 
-PixelBlock MomentPyramid::pixels(const TileRect& rect) const {
-  return {&inverse_depth_[tables_.offset(rect.x, rect.y)], tables_.from(rect.x, rect.y), rect.width,
-          rect.height};
-}
-
-ResidualSums MomentPyramid::residuals(const TileRect& rect, const Eigen::Vector3f& plane) const {
-  return kernels_.residuals({pixels(rect), plane.x(), plane.y(), plane.z()});
+ResidualSums MomentPyramid::residuals(const TileRect& rect, const NodePlane& plane) const {
+  return std::visit(
+      [&](const auto& depth) {
+        const auto pixels = block(depth, rect);
+        return kernelsFor(pixels).residuals(pixels, tables_.from(rect.x, rect.y), plane);
+      },
+      depth_);
 }
 
 ResidualSums MomentPyramid::sampleResiduals(const QuadtreeNode& node,
-                                            const Eigen::Vector3f& plane) const {
-  const TileRect rect = grid_.rect(node);
-  // A plane fits rows at the rim better than those in the middle: neighbours take turns.
-  const int first = std::min((node.column + node.row) % 2, rect.height - 1);
-  PixelBlock sampled = pixels({rect.x, rect.y + first, rect.width, rect.height - first});
-  sampled.rows = (sampled.rows + kSampledRows - 1) / kSampledRows;
-  sampled.tangents.stride *= kSampledRows;
-  ResidualSums sums = kernels_.residuals({sampled, plane.x(), plane.y(), plane.z()});
-  const float scale = static_cast<float>(rect.height) / static_cast<float>(sampled.rows);
+                                            const NodePlane& plane) const {
+  // A plane fits better at the rim than in the middle: nodes take turns in what is looked at.
+  const int turn = node.column + 3 * node.row;
+  TileRect rect = grid_.rect(node);
+  const int area = rect.area();
+  const int step = std::max(kMinRowStep, (rect.height + kMostSampledRows - 1) / kMostSampledRows);
+  const int first = turn % std::min(step, rect.height);
+  rect.y += first;
+  rect.height = (rect.height - first + step - 1) / step;
+  const int parts = std::max(1, rect.width / kSampledColumns);
+  const int part = turn % parts;
+  rect.x += part * kSampledColumns;
+  rect.width = part + 1 < parts ? kSampledColumns : rect.width - part * kSampledColumns;
+  TangentRows tangents = tables_.from(rect.x, rect.y);
+  tangents.stride *= step;
+  ResidualSums sums = std::visit(
+      [&](const auto& depth) {
+        auto pixels = block(depth, rect);
+        pixels.stride *= step;
+        return kernelsFor(pixels).residuals(pixels, tangents, plane);
+      },
+      depth_);
+  const float scale = static_cast<float>(area) / static_cast<float>(rect.area());
   sums.inverse_depth *= scale;
   sums.relative *= scale;
   sums.depth *= scale;

@@ -52,8 +52,8 @@ struct QuadtreeLayout {
 
 /// What the fit knows of its own quality. Errors are means over the covered valid pixels.
 struct PlaneCloudStatistics {
-  // Errors of pruned clouds are those of every fourth row, or guessed from the moments when time
-  // ran out.
+  // Errors of pruned clouds follow from the moments, corrected by a look at the pixels of some
+  // tiles where time allows.
   double coverage = 0.0;           ///< covered share of the pixels with depth, [0, 1]
   double point_plane_error = 0.0;  ///< mean distance of points to their planes [m]
   double depth_error = 0.0;        ///< mean error along the viewing ray's depth [m]

@@ -2,15 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/plane_fit/plane_regression.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace planecloud {
-namespace {
-
-/// Mean square spread of pixels below which a direction counts as not spanned, relative to the
-/// other one: tiles are at most 80 px long (variance 533 px^2), two neighbouring rows have 1/4
-/// px^2.
-constexpr double kMinSpreadRatio = 1e-5;
-
-}  // namespace
 
 void TileMoments::add(double pixel_u, double pixel_v, double pixel_q, double weight) {
   n += weight;
@@ -50,9 +45,8 @@ TangentScatterInverse invertTangentScatter(const TileMoments& m) {
     const double inverse_det = 1.0 / det;
     return {vv * inverse_det, -uv * inverse_det, uu * inverse_det};
   }
-  // One direction only: S = trace * e e^T has the pseudo-inverse S / trace^2. A single pixel has
-  // no direction: what is left of its trace is rounding.
-  if (!(trace > 1e-12 * (m.uu + m.vv)) || m.n < 2.0) return {};
+  // One direction only: S = trace * e e^T has the pseudo-inverse S / trace^2.
+  if (!(trace > kRoundingSpreadRatio * (m.uu + m.vv)) || m.n < 2.0) return {};
   return {uu / (trace * trace), uv / (trace * trace), vv / (trace * trace)};
 }
 
@@ -64,6 +58,12 @@ Eigen::Vector3d regressInverseDepth(const TileMoments& m) {
   const double alpha = inverse.uu * qu + inverse.uv * qv;
   const double beta = inverse.uv * qu + inverse.vv * qv;
   return {alpha, beta, (m.q - alpha * m.u - beta * m.v) * inverse_n};
+}
+
+double rootMeanSquare(const TileMoments& m, const Eigen::Vector3d& plane) {
+  // Residuals of a regression are orthogonal to it.
+  const double squares = m.qq - plane.dot(Eigen::Vector3d(m.qu, m.qv, m.q));
+  return std::sqrt(std::max(0.0, squares / m.n));
 }
 
 }  // namespace planecloud

@@ -3,6 +3,7 @@
 #include "planecloud_slam/plane_fit/quadtree_fitter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ constexpr double kMergeShare = 0.25;
 /// The way from the nodes weighed to tiles takes this of the time for weighing them, at most, and
 /// so does a look at their pixels.
 constexpr double kAfterChoiceShare = 0.5;
+/// About so many tiles' pixels are looked at to know the errors of all.
+constexpr double kLookedAtTiles = 128.0;
 
 template <typename Pixel>
 void checkSize(const ImageView<Pixel>& depth, const Camera& camera) {
@@ -79,7 +82,8 @@ class QuadtreeFitter::Impl {
   Impl(std::shared_ptr<const Camera> camera, const QuadtreeFitterOptions& options)
       : camera_(std::move(camera)),
         options_(options),
-        pyramid_(camera_, layout(options), vectorTileKernels()),
+        pyramid_(camera_, layout(options), vectorTileKernels(),
+                 TileFitter::distortionRule(options)),
         tile_fitter_(pyramid_, options),
         pruner_(pyramid_, tile_fitter_, options.lambda) {}
 
@@ -96,6 +100,8 @@ class QuadtreeFitter::Impl {
   }
   void fitLevels(const BudgetMeter& meter, PlaneCloudStatistics& statistics);
   void fitPruned(const BudgetMeter& meter, PlaneCloudStatistics& statistics);
+  /// Makes the expected errors of `fits_`, of nodes from the first on, those of pixels.
+  void lookAtPixels(const std::vector<QuadtreeNode>& nodes);
   void pushRoots();
   void pushChildren(const QuadtreeNode& node);
   void accept(const QuadtreeNode& node, const TileFit& fit);
@@ -108,6 +114,7 @@ class QuadtreeFitter::Impl {
   TreePruner pruner_;
   std::vector<QuadtreeNode> queue_;  // the level being fitted
   std::vector<QuadtreeNode> next_;   // the level below
+  std::vector<TileFit> fits_;
   std::vector<PlanarTile> tiles_;
   double covered_ = 0.0;
   double depth_sum_ = 0.0;
@@ -175,13 +182,43 @@ void QuadtreeFitter::Impl::fitPruned(const BudgetMeter& meter, PlaneCloudStatist
   };
   const std::vector<QuadtreeNode>& nodes = pruner_.choose(is_late);
   statistics.stopped_by_time = late;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  fits_.clear();
+  for (const QuadtreeNode& node : nodes) {
     statistics.stopped_by_bytes = !meter.hasRoomFor(tiles_.size() + 1);
-    if (statistics.stopped_by_bytes) return;
-    // Errors are worth a look at the pixels as long as there is time.
-    const bool estimated = late || (i % kTilesAtOnce == 0 && is_late());
-    accept(nodes[i], estimated ? tile_fitter_.estimate(nodes[i]) : tile_fitter_.sample(nodes[i]));
+    if (statistics.stopped_by_bytes) break;
+    fits_.push_back(tile_fitter_.estimate(node));
+    accept(node, fits_.back());
   }
+  if (!is_late()) {
+    lookAtPixels(nodes);
+    return;
+  }
+  for (std::size_t i = 0; i < fits_.size(); ++i) {
+    point_plane_sum_ += tile_fitter_.estimatePointPlane(nodes[i], fits_[i]);
+  }
+}
+
+void QuadtreeFitter::Impl::lookAtPixels(const std::vector<QuadtreeNode>& nodes) {
+  // Systematic sampling, each tile with a probability that grows with the error it is expected to
+  // have; then the ratio of what is found to what was expected, of these tiles, holds for all.
+  const double step = depth_sum_ / kLookedAtTiles;
+  double since_last = 0.5 * step;
+  double expected = 0.0;
+  double depth_found = 0.0;
+  double point_plane_found = 0.0;
+  for (std::size_t i = 0; i < fits_.size(); ++i) {
+    since_last += fits_[i].depth_sum;
+    if (since_last < step) continue;
+    since_last = std::fmod(since_last, step);
+    const double weight = std::max(1.0, step / fits_[i].depth_sum);
+    const TileFit found = tile_fitter_.sample(nodes[i], fits_[i].plane);
+    expected += weight * fits_[i].depth_sum;
+    depth_found += weight * found.depth_sum;
+    point_plane_found += weight * found.point_plane_sum;
+  }
+  if (expected <= 0.0) return;
+  point_plane_sum_ = depth_sum_ * (point_plane_found / expected);
+  depth_sum_ *= depth_found / expected;
 }
 
 void QuadtreeFitter::Impl::pushRoots() {

@@ -10,8 +10,6 @@
 namespace planecloud {
 namespace {
 
-constexpr std::ptrdiff_t kRowPadding = 16;  // floats a vector kernel may read past a row
-
 void prepareRegression(const TangentSums& sums, std::size_t node, FullNodes& full) {
   TileMoments moments;
   moments.n = full.n[node];
@@ -38,12 +36,16 @@ void FullNodes::resize(std::size_t nodes) {
   }
 }
 
+void AffineTangents::resize(std::size_t cells) {
+  for (std::vector<float>* values : {&u, &u_right, &u_down, &v, &v_right, &v_down}) {
+    values->resize(cells, 0.0F);
+  }
+}
+
 TangentTables::TangentTables(const Camera& camera, const QuadtreeGrid& grid)
-    : stride_((camera.width() + 2 * kRowPadding - 1) / kRowPadding * kRowPadding),
+    : u_(camera.width(), camera.height()),
+      v_(camera.width(), camera.height()),
       levels_(static_cast<std::size_t>(grid.levels())) {
-  const auto pixels = static_cast<std::size_t>(stride_ * camera.height() + kRowPadding);
-  u_.assign(pixels, 0.0F);
-  v_.assign(pixels, 0.0F);
   for (int i = 0; i < grid.levels(); ++i) {
     Level& level = levels_[static_cast<std::size_t>(i)];
     level.columns = grid.columns(i);
@@ -68,8 +70,8 @@ void TangentTables::tabulatePixels(const Camera& camera, const QuadtreeGrid& gri
       origins_.push_back(center);
       for (int y = root.y; y < root.y + root.height; ++y) {
         for (int x = root.x; x < root.x + root.width; ++x) {
-          u_[offset(x, y)] = camera.tangentsX()(x, y) - center.x();
-          v_[offset(x, y)] = camera.tangentsY()(x, y) - center.y();
+          u_(x, y) = camera.tangentsX()(x, y) - center.x();
+          v_(x, y) = camera.tangentsY()(x, y) - center.y();
         }
       }
     }
@@ -78,6 +80,7 @@ void TangentTables::tabulatePixels(const Camera& camera, const QuadtreeGrid& gri
 
 void TangentTables::tabulateCells(const QuadtreeGrid& grid) {
   Level& cells = levels_.back();
+  cells_.resize(cells.sums.size());
   for (std::size_t i = 0; i < cells.sums.size(); ++i) {
     const int index = static_cast<int>(i);
     const TileRect rect =
@@ -85,14 +88,34 @@ void TangentTables::tabulateCells(const QuadtreeGrid& grid) {
     TileMoments sums;
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
       for (int x = rect.x; x < rect.x + rect.width; ++x) {
-        sums.add(u_[offset(x, y)], v_[offset(x, y)], 0.0);
+        sums.add(u_(x, y), v_(x, y), 0.0);
       }
     }
     cells.full.n[i] = static_cast<float>(sums.n);
     cells.sums[i] = {static_cast<float>(sums.u), static_cast<float>(sums.v),
                      static_cast<float>(sums.uu), static_cast<float>(sums.uv),
                      static_cast<float>(sums.vv)};
+    if (rect.area() > 0) approximateCell(rect, i);
   }
+}
+
+void TangentTables::approximateCell(const TileRect& rect, std::size_t cell) {
+  TileMoments u, v;  // regressions of the tangents on pixel positions
+  for (int y = 0; y < rect.height; ++y) {
+    for (int x = 0; x < rect.width; ++x) {
+      u.add(x, y, u_(rect.x + x, rect.y + y));
+      v.add(x, y, v_(rect.x + x, rect.y + y));
+    }
+  }
+  const Eigen::Vector3f u_plane = regressInverseDepth(u).cast<float>();
+  const Eigen::Vector3f v_plane = regressInverseDepth(v).cast<float>();
+  // What is one pixel wide or high has no slope across: any that can be inverted.
+  cells_.u[cell] = u_plane.z();
+  cells_.u_right[cell] = rect.width > 1 ? u_plane.x() : 1.0F;
+  cells_.u_down[cell] = u_plane.y();
+  cells_.v[cell] = v_plane.z();
+  cells_.v_right[cell] = v_plane.x();
+  cells_.v_down[cell] = rect.height > 1 ? v_plane.y() : 1.0F;
 }
 
 void TangentTables::mergeLevel(std::size_t parent_level) {
@@ -108,7 +131,7 @@ void TangentTables::mergeLevel(std::size_t parent_level) {
 }
 
 void TangentTables::prepareRegressions(const QuadtreeGrid& grid) {
-  for (int i = 0; i < grid.levels(); ++i) {
+  for (int i = 0; i + 1 < grid.levels(); ++i) {
     Level& level = levels_[static_cast<std::size_t>(i)];
     for (std::size_t j = 0; j < level.sums.size(); ++j) {
       if (level.full.n[j] == 0.0F) continue;

@@ -12,7 +12,8 @@
 
 namespace planecloud {
 
-/// What regression needs of the nodes of one level when they have no holes (see `FullNodeRows`).
+/// What regression needs of the nodes of one level when they have no holes (see `FullNodeRows`);
+/// of cells only `n` is kept.
 struct FullNodes {
   std::vector<float> n, inverse_n;  ///< pixels
   std::vector<float> mean_u, mean_v, reach_u, reach_v;
@@ -21,8 +22,21 @@ struct FullNodes {
   void resize(std::size_t nodes);
   /// The nodes from `first` on.
   [[nodiscard]] FullNodeRows from(std::size_t first) const {
-    return {&inverse_n[first], &mean_u[first],     &mean_v[first],     &reach_u[first],
-            &reach_v[first],   &inverse_uu[first], &inverse_uv[first], &inverse_vv[first]};
+    return {&n[first],          &inverse_n[first],  &mean_u[first],
+            &mean_v[first],     &reach_u[first],    &reach_v[first],
+            &inverse_uu[first], &inverse_uv[first], &inverse_vv[first]};
+  }
+};
+
+/// Of every cell, row-major (see `CellTangents`): the affine function nearest to its pixels'
+/// tangents.
+struct AffineTangents {
+  std::vector<float> u, u_right, u_down, v, v_right, v_down;
+
+  void resize(std::size_t cells);
+  /// The cells from `first` on.
+  [[nodiscard]] CellTangents from(std::size_t first) const {
+    return {&u[first], &u_right[first], &u_down[first], &v[first], &v_right[first], &v_down[first]};
   }
 };
 
@@ -39,20 +53,10 @@ class TangentTables {
 
   TangentTables(const Camera& camera, const QuadtreeGrid& grid);
 
-  /// Floats from one row of pixels to the next; rows may be read `kRowPadding` past their end.
-  [[nodiscard]] std::ptrdiff_t stride() const { return stride_; }
-  /// Floats of an image with rows like these.
-  [[nodiscard]] std::size_t size() const { return u_.size(); }
-  [[nodiscard]] std::size_t offset(int x, int y) const {
-    return static_cast<std::size_t>(y * stride_ + x);
-  }
-  [[nodiscard]] Eigen::Vector2f at(int x, int y) const {
-    return {u_[offset(x, y)], v_[offset(x, y)]};
-  }
+  [[nodiscard]] Eigen::Vector2f at(int x, int y) const { return {u_(x, y), v_(x, y)}; }
   /// The rows from pixel (x, y) on.
-  [[nodiscard]] TangentRows from(int x, int y) const {
-    return {&u_[offset(x, y)], &v_[offset(x, y)], stride_};
-  }
+  [[nodiscard]] TangentRows from(int x, int y) const { return {&u_(x, y), &v_(x, y), u_.width()}; }
+  [[nodiscard]] const AffineTangents& cells() const { return cells_; }
   /// Tangents of the centre of an initial tile, row-major.
   [[nodiscard]] const Eigen::Vector2f& origin(std::size_t root) const { return origins_[root]; }
   [[nodiscard]] const Level& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
@@ -60,12 +64,13 @@ class TangentTables {
  private:
   void tabulatePixels(const Camera& camera, const QuadtreeGrid& grid);
   void tabulateCells(const QuadtreeGrid& grid);
+  void approximateCell(const TileRect& rect, std::size_t cell);
   void mergeLevel(std::size_t parent_level);
   void prepareRegressions(const QuadtreeGrid& grid);
   void measureReach(const TileRect& rect, std::size_t node, FullNodes& full) const;
 
-  std::ptrdiff_t stride_ = 0;
-  std::vector<float> u_, v_;
+  Image<float> u_, v_;
+  AffineTangents cells_;
   std::vector<Eigen::Vector2f> origins_;
   std::vector<Level> levels_;
 };

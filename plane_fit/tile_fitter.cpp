@@ -34,7 +34,17 @@ float relativeError(const NodePlane& plane, float depth) {
 
 Eigen::Vector3f toVector(const NodePlane& plane) { return {plane.alpha, plane.beta, plane.gamma}; }
 
+/// Of a plane about `origin` from the camera [m].
+float distance(const Eigen::Vector3f& plane, const Eigen::Vector2f& origin) {
+  const float gamma = plane.z() - plane.head<2>().dot(origin);
+  return 1.0F / Eigen::Vector3f(plane.x(), plane.y(), gamma).norm();
+}
+
 }  // namespace
+
+DistortionRule TileFitter::distortionRule(const QuadtreeFitterOptions& options) {
+  return {kMeanOverRms / static_cast<float>(options.tolerance), 2 - depthPower(options.acceptance)};
+}
 
 std::optional<TileFit> TileFitter::fit(const QuadtreeNode& node) const {
   const int count = pyramid_.count(node);
@@ -50,14 +60,14 @@ std::optional<TileFit> TileFitter::fit(const QuadtreeNode& node) const {
   }
   const NodePlane plane = pyramid_.regress(node);
   if (!isInFront(node, plane)) return std::nullopt;
-  return measure(rect, toVector(plane), origin, count, mean_depth);
+  return measure(rect, plane, origin, count, mean_depth);
 }
 
-TileFit TileFitter::sample(const QuadtreeNode& node) const {
+TileFit TileFitter::sample(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
   TileFit fit;
-  fit.plane = toVector(pyramid_.regress(node));
+  fit.plane = plane;
   fit.count = pyramid_.count(node);
-  const ResidualSums sums = pyramid_.sampleResiduals(node, fit.plane);
+  const ResidualSums sums = pyramid_.sampleResiduals(node, {plane.x(), plane.y(), plane.z(), 0.0F});
   fit.depth_sum = sums.depth;
   fit.point_plane_sum = planeDistance(node, fit.plane) * sums.relative;
   return fit;
@@ -69,40 +79,30 @@ TileFit TileFitter::estimate(const QuadtreeNode& node) const {
   fit.plane = toVector(plane);
   fit.count = pyramid_.count(node);
   const float depth = 1.0F / pyramid_.meanInverseDepth(node);
-  const float error = relativeError(plane, depth);
-  fit.depth_sum = fit.count * error * depth;
-  fit.point_plane_sum = fit.count * error * planeDistance(node, fit.plane);
+  fit.depth_sum = fit.count * (relativeError(plane, depth) * depth);
   return fit;
 }
 
-std::optional<float> TileFitter::distortion(const QuadtreeNode& node) const {
+double TileFitter::estimatePointPlane(const QuadtreeNode& node, const TileFit& fit) const {
+  return fit.depth_sum * pyramid_.meanInverseDepth(node) * planeDistance(node, fit.plane);
+}
+
+bool TileFitter::hasEnoughDepth(const QuadtreeNode& node) const {
   const int count = pyramid_.count(node);
-  if (count == 0 || count < options_.min_fill * pyramid_.area(node)) return std::nullopt;
-  if (!hasDepthAtCorners(node)) return std::nullopt;
+  return count > 0 && count >= options_.min_fill * pyramid_.area(node) && hasDepthAtCorners(node);
+}
+
+float TileFitter::distortionByPlane(const QuadtreeNode& node) const {
   const NodePlane plane = pyramid_.regress(node);
-  if (!isInFront(node, plane)) return std::nullopt;
+  if (!isInFront(node, plane)) return -1.0F;
   const float depth = 1.0F / pyramid_.meanInverseDepth(node);
   const float error = relativeError(plane, depth);
   const float scale = options_.along_ray_test ? depth : planeDistance(node, toVector(plane));
-  return static_cast<float>(count) * error * scale / allowedError(depth);
-}
-
-void TileFitter::distortions(int level, std::vector<float>& result) const {
-  const auto nodes = static_cast<std::size_t>(pyramid_.grid().columns(level)) *
-                     static_cast<std::size_t>(pyramid_.grid().rows(level));
-  if (!options_.along_ray_test) {
-    result.assign(nodes, -1.0F);
-    return;
-  }
-  result.resize(nodes);
-  const DistortionRule rule{kMeanOverRms / static_cast<float>(options_.tolerance),
-                            2 - depthPower(options_.acceptance)};
-  pyramid_.kernels().weigh(pyramid_.rows(level), rule, nodes, result.data());
+  return static_cast<float>(pyramid_.count(node)) * error * scale / allowedError(depth);
 }
 
 float TileFitter::planeDistance(const QuadtreeNode& node, const Eigen::Vector3f& plane) const {
-  const float gamma = plane.z() - plane.head<2>().dot(pyramid_.origin(node));
-  return 1.0F / Eigen::Vector3f(plane.x(), plane.y(), gamma).norm();
+  return distance(plane, pyramid_.origin(node));
 }
 
 int TileFitter::cornerWindow(const TileRect& rect) const {
@@ -113,8 +113,15 @@ int TileFitter::cornerWindow(const TileRect& rect) const {
 bool TileFitter::hasDepthAtCorners(const QuadtreeNode& node) const {
   if (options_.corner_check == CornerCheck::kNone) return true;
   const TileRect rect = pyramid_.grid().rect(node);
-  const std::optional<bool> known = pyramid_.hasDepthAtCorners(node, cornerWindow(rect));
-  return known ? *known : findCorners(rect).has_value();
+  const int window = cornerWindow(rect);
+  const std::optional<bool> known = pyramid_.hasDepthAtCorners(node, window);
+  if (known) return *known;
+  const int right = rect.x + rect.width - window;
+  const int bottom = rect.y + rect.height - window;
+  return pyramid_.hasDepth({rect.x, rect.y, window, window}) &&
+         pyramid_.hasDepth({right, rect.y, window, window}) &&
+         pyramid_.hasDepth({rect.x, bottom, window, window}) &&
+         pyramid_.hasDepth({right, bottom, window, window});
 }
 
 std::optional<TileFitter::CornerPixels> TileFitter::findCorners(const TileRect& rect) const {
@@ -191,15 +198,14 @@ float TileFitter::allowedError(float depth) const {
   return allowed;
 }
 
-std::optional<TileFit> TileFitter::measure(const TileRect& rect, const Eigen::Vector3f& plane,
+std::optional<TileFit> TileFitter::measure(const TileRect& rect, const NodePlane& plane,
                                            const Eigen::Vector2f& origin, double count,
                                            float mean_depth) const {
-  const double d =
-      1.0 / Eigen::Vector3f(plane.x(), plane.y(), plane.z() - plane.head<2>().dot(origin)).norm();
+  const double d = distance(toVector(plane), origin);
   const double allowed_sum = count * allowedError(mean_depth);
   const bool noise_scaled = options_.acceptance == AcceptanceRule::kNoiseScaled;
   TileFit fit;
-  fit.plane = plane;
+  fit.plane = toVector(plane);
   fit.count = count;
   double inverse_depth_sum = 0.0;
   for (int y = 0; y < rect.height; y += kRowsAtOnce) {

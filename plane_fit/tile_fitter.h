@@ -24,26 +24,39 @@ struct TileFit {
 /// Decides on one node of Algorithm 1: depth at the corners, planarity, regression, error.
 class TileFitter {
  public:
-  /// Keeps a reference to `pyramid`.
+  /// The rule by which a pyramid weighs residuals as these options do.
+  [[nodiscard]] static DistortionRule distortionRule(const QuadtreeFitterOptions& options);
+
+  /// Keeps a reference to `pyramid`, which weighs by `distortionRule(options)`.
   TileFitter(const MomentPyramid& pyramid, const QuadtreeFitterOptions& options)
       : pyramid_(pyramid), options_(options) {}
 
   /// The node's plane; empty when the node has to be subdivided.
   [[nodiscard]] std::optional<TileFit> fit(const QuadtreeNode& node) const;
-  /// The node's plane and its error, from every fourth row of pixels; for a node with depth.
-  [[nodiscard]] TileFit sample(const QuadtreeNode& node) const;
-  /// The same without a look at the pixels: the moments know the mean square of the residuals, and
-  /// noise has a mean of 0.8 of its root.
+  /// The node's plane and its error along the rays, without a look at the pixels; for a node with
+  /// depth. The moments know the mean square of the residuals, and noise has a mean of 0.8 of its
+  /// root.
   [[nodiscard]] TileFit estimate(const QuadtreeNode& node) const;
+  /// `point_plane_sum` of an estimate [m].
+  [[nodiscard]] double estimatePointPlane(const QuadtreeNode& node, const TileFit& fit) const;
+  /// The error of that plane from some of its pixels.
+  [[nodiscard]] TileFit sample(const QuadtreeNode& node, const Eigen::Vector3f& plane) const;
+  /// The node has enough pixels with depth, its corners among them.
+  [[nodiscard]] bool isSupported(const QuadtreeNode& node) const {
+    return pyramid_.isFull(node) || hasEnoughDepth(node);
+  }
   /// The estimated error that acceptance asks about (along the ray, or only to the plane without
-  /// `along_ray_test`), summed over the node's pixels and in units of the tolerance. Empty when the
-  /// node cannot be a tile: too little depth, or a plane that is not in front of the camera.
-  [[nodiscard]] std::optional<float> distortion(const QuadtreeNode& node) const;
-  /// The same for all nodes of a level, row-major, at once; negative where `distortion` has to be
-  /// asked: for nodes with holes, planes far off and without `along_ray_test`.
-  void distortions(int level, std::vector<float>& result) const;
+  /// `along_ray_test`), summed over the node's pixels and in units of the tolerance. Negative when
+  /// the node cannot be a tile: too little depth, or a plane that is not in front of the camera.
+  [[nodiscard]] float distortion(const QuadtreeNode& node) const {
+    if (!isSupported(node)) return -1.0F;
+    const float known = pyramid_.distortion(node);
+    return known < 0.0F || !options_.along_ray_test ? distortionByPlane(node) : known;
+  }
 
  private:
+  [[nodiscard]] float distortionByPlane(const QuadtreeNode& node) const;
+  [[nodiscard]] bool hasEnoughDepth(const QuadtreeNode& node) const;
   /// A pixel with depth: tangents about the tile's origin, inverse depth.
   struct Corner {
     float u = 0.0F;
@@ -66,7 +79,7 @@ class TileFitter {
   [[nodiscard]] bool isPlanar(const Corners& corners, const Eigen::Vector2f& origin,
                               float allowed) const;
   [[nodiscard]] bool isInFront(const QuadtreeNode& node, const NodePlane& plane) const;
-  [[nodiscard]] std::optional<TileFit> measure(const TileRect& rect, const Eigen::Vector3f& plane,
+  [[nodiscard]] std::optional<TileFit> measure(const TileRect& rect, const NodePlane& plane,
                                                const Eigen::Vector2f& origin, double count,
                                                float mean_depth) const;
   [[nodiscard]] float allowedError(float depth) const;

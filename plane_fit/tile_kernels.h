@@ -4,18 +4,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace planecloud {
 
-/// Row-major float planes of one image with padded rows: every row may be read 16 floats past its
-/// end. Tangents (u, v) are about the centre of the initial tile they lie in.
+/// Row-major float planes of one image. Tangents (u, v) are about the centre of the initial tile
+/// they lie in.
 struct TangentRows {
   const float* u = nullptr;
   const float* v = nullptr;
-  std::ptrdiff_t stride = 0;  ///< [floats], of the inverse depth as well
+  std::ptrdiff_t stride = 0;  ///< [floats]
 };
 
-/// Sums of the tangents over some pixels of a node.
+/// Sums of the tangents over some pixels of a node (paper eq. (4), the rows above the last).
 struct TangentSums {
   float u = 0.0F, v = 0.0F, uu = 0.0F, uv = 0.0F, vv = 0.0F;
 
@@ -29,10 +30,11 @@ struct TangentSums {
   }
 };
 
-/// The pixels of a rectangle.
-struct PixelBlock {
-  const float* inverse_depth = nullptr;  ///< [1/m], 0: none
-  TangentRows tangents;
+/// Depth of a rectangle of pixels, as it comes in a message (see DepthTraits).
+template <typename Pixel>
+struct DepthBlock {
+  const Pixel* depth = nullptr;
+  std::ptrdiff_t stride = 0;  ///< [pixels]
   int width = 0;
   int rows = 0;
 };
@@ -40,21 +42,29 @@ struct PixelBlock {
 /// Sums over the rows of a strip for each pixel column.
 struct ColumnSums {
   float* n = nullptr;
-  float* q = nullptr;
-  float* qu = nullptr;
-  float* qv = nullptr;
+  float* q = nullptr;   ///< inverse depth [1/m]
+  float* qy = nullptr;  ///< times the row, counted from the strip's first
   float* qq = nullptr;
 };
 
-/// A strip of the image, one row of cells high.
-template <typename Pixel>
-struct DepthStrip {
-  const Pixel* depth = nullptr;
-  std::ptrdiff_t depth_stride = 0;  ///< [pixels]
-  TangentRows tangents;             ///< at the strip's first pixel
-  float* inverse_depth = nullptr;   ///< written, 0: none; stride of `tangents`
-  int width = 0;
-  int rows = 0;
+/// Tangents inside each of a row of cells: u + right x + down y about the cell's first pixel. Over
+/// so few pixels a lens is as good as affine.
+struct CellTangents {
+  const float* u = nullptr;
+  const float* u_right = nullptr;
+  const float* u_down = nullptr;
+  const float* v = nullptr;
+  const float* v_right = nullptr;
+  const float* v_down = nullptr;
+};
+
+/// A row of cells over a strip's columns.
+struct CellRow {
+  const int* edges = nullptr;  ///< first column of each cell, at last the end
+  int cells = 0;
+  int fours = 0;  ///< so many of them, from the first on, are four columns wide
+  int height = 0;
+  CellTangents tangents;
 };
 
 /// The data-dependent sums of one cell or node (paper eq. (4), bottom row).
@@ -73,11 +83,23 @@ struct alignas(16) DepthSums {
   }
 };
 
+/// How much of a node has depth.
+enum class Fill : std::uint8_t { kNothing, kPart, kAll };
+
+/// Sums of a row of cells, an array for each.
+struct CellSums {
+  DepthSums* depth = nullptr;
+  float* counts = nullptr;
+  Fill* fills = nullptr;
+  float* distortions = nullptr;
+};
+
 /// Planes are only kept where their inverse depth is at least this inside the tile [1/m]: 64 m.
 inline constexpr float kMinPlaneInverseDepth = 1.0F / 64.0F;
 
 /// What the regression of nodes that have no holes takes from the camera, an array for each.
 struct FullNodeRows {
+  const float* n = nullptr;          ///< pixels
   const float* inverse_n = nullptr;  ///< 1 / pixels, 0: no pixels
   const float* mean_u = nullptr;
   const float* mean_v = nullptr;
@@ -98,12 +120,25 @@ struct alignas(16) NodePlane {
   float rms = 0.0F;
 };
 
-/// Nodes of one level: pixels, pixels with depth, sums over them and regression.
-struct NodeRows {
-  const float* full = nullptr;
-  const float* counts = nullptr;
-  const DepthSums* sums = nullptr;
-  const NodePlane* planes = nullptr;
+/// Regressions and how they weigh, an array for each.
+struct PlaneFits {
+  NodePlane* planes = nullptr;
+  float* distortions = nullptr;
+};
+
+/// Moments of nodes about their origins, an array for each (see TileMoments).
+struct MomentRows {
+  const double *n, *u, *v, *uu, *uv, *vv, *q, *qu, *qv, *qq;
+};
+
+/// Regressions (see NodePlane; `rms` without a sign), an array for each.
+struct PlaneRows {
+  double *alpha, *beta, *gamma, *rms;
+};
+
+/// Sums over the pixels of a cell that have depth: columns x and rows y, counted from its first.
+struct PositionSums {
+  float n = 0.0F, x = 0.0F, y = 0.0F, xx = 0.0F, xy = 0.0F, yy = 0.0F;
 };
 
 /// How the residuals of a node's regression weigh: the sum over its pixels of factor * rms *
@@ -113,12 +148,18 @@ struct DistortionRule {
   int depth_power = 0;  ///< 0, 1 or 2
 };
 
-/// A plane q = alpha u + beta v + gamma against the pixels of a rectangle.
-struct ResidualQuery {
-  PixelBlock pixels;
-  float alpha = 0.0F;
-  float beta = 0.0F;
-  float gamma = 0.0F;
+/// What the pixels of a block that have depth add to a node's moments.
+struct BlockSums {
+  TangentSums tangents;
+  float qu = 0.0F;
+  float qv = 0.0F;
+
+  BlockSums& operator+=(const BlockSums& other) {
+    tangents += other.tangents;
+    qu += other.qu;
+    qv += other.qv;
+    return *this;
+  }
 };
 
 /// Sums over the pixels with depth; q^ is the plane's inverse depth, z^ = 1 / q^.
@@ -126,26 +167,50 @@ struct ResidualSums {
   float inverse_depth = 0.0F;  ///< |q - q^| [1/m]
   float relative = 0.0F;       ///< |q - q^| z: times the plane's d = distance to the plane
   float depth = 0.0F;          ///< |z - z^| [m]
+
+  ResidualSums& operator+=(const ResidualSums& other) {
+    inverse_depth += other.inverse_depth;
+    relative += other.relative;
+    depth += other.depth;
+    return *this;
+  }
 };
 
-/// The loops over pixels. Two implementations that agree up to the order of summation.
+/// The loops over pixels. `tangents` begin at the block's first pixel.
+template <typename Pixel>
+struct PixelKernels {
+  void (*sum_columns)(const DepthBlock<Pixel>& strip, const ColumnSums& sums);
+  PositionSums (*sum_positions)(const DepthBlock<Pixel>& block);
+  BlockSums (*sum_block)(const DepthBlock<Pixel>& block, const TangentRows& tangents);
+  /// Of the plane q = alpha u + beta v + gamma.
+  ResidualSums (*residuals)(const DepthBlock<Pixel>& block, const TangentRows& tangents,
+                            const NodePlane& plane);
+};
+
+/// The loops of the fit. Two implementations that agree up to the order of summation.
 struct TileKernels {
   const char* name;
-  void (*sum_columns_f32)(const DepthStrip<float>& strip, const ColumnSums& sums);
-  void (*sum_columns_u16)(const DepthStrip<std::uint16_t>& strip, const ColumnSums& sums);
-  /// Adds up groups of `cell_width` columns: `cells` sums and counts.
-  void (*sum_cells)(const ColumnSums& columns, int cell_width, int cells, DepthSums* sums,
-                    float* counts);
-  /// Over the pixels with depth.
-  TangentSums (*sum_tangents)(const PixelBlock& pixels);
-  /// Regression of `count` nodes as if they had no holes.
-  void (*regress)(const DepthSums* sums, const FullNodeRows& nodes, std::size_t count,
-                  NodePlane* planes);
-  /// Distortion of `count` nodes that have depth in every pixel and a plane that is in front;
-  /// negative for the others.
-  void (*weigh)(const NodeRows& nodes, const DistortionRule& rule, std::size_t count,
-                float* distortions);
-  ResidualSums (*residuals)(const ResidualQuery& query);
+  PixelKernels<float> f32;
+  PixelKernels<std::uint16_t> u16;
+  /// Adds up the columns of each cell, and weighs what a regression would leave of it if it has no
+  /// holes (see `regress`): in pixels, where regression needs nothing of the camera.
+  void (*sum_cells)(const ColumnSums& columns, const CellRow& row, const DistortionRule& rule,
+                    const CellSums& sums);
+  /// Regression of `count` nodes as if they had no holes, and its distortion; negative where the
+  /// plane may be too far off (see `NodePlane`).
+  void (*regress)(const DepthSums* sums, const FullNodeRows& nodes, const DistortionRule& rule,
+                  std::size_t count, const PlaneFits& fits);
+  /// Regression of `count` nodes with n > 0, holes or not.
+  void (*regress_moments)(const MomentRows& moments, const PlaneRows& planes, std::size_t count);
+
+  template <typename Pixel>
+  [[nodiscard]] const PixelKernels<Pixel>& of() const {
+    if constexpr (std::is_same_v<Pixel, float>) {
+      return f32;
+    } else {
+      return u16;
+    }
+  }
 };
 
 /// Plain C++: the reference of the tests and the fallback.

@@ -3,27 +3,39 @@
 #include "planecloud_slam/plane_fit/tile_kernels_scalar.h"
 
 namespace planecloud {
+namespace {
+
+template <typename Pixel>
+PixelKernels<Pixel> pixelKernels() {
+  return {
+      [](const DepthBlock<Pixel>& strip, const ColumnSums& sums) {
+        scalar::sumColumns(strip, sums, 0);
+      },
+      &scalar::sumPositions<Pixel>,
+      [](const DepthBlock<Pixel>& block, const TangentRows& tangents) {
+        return scalar::sumBlock(block, tangents, 0);
+      },
+      [](const DepthBlock<Pixel>& block, const TangentRows& tangents, const NodePlane& plane) {
+        return scalar::residuals(block, tangents, plane, 0);
+      },
+  };
+}
+
+}  // namespace
 
 const TileKernels& scalarTileKernels() {
   static const TileKernels kernels{
       "scalar",
-      [](const DepthStrip<float>& strip, const ColumnSums& sums) {
-        scalar::sumColumns(strip, sums, 0);
+      pixelKernels<float>(),
+      pixelKernels<std::uint16_t>(),
+      [](const ColumnSums& columns, const CellRow& row, const DistortionRule& rule,
+         const CellSums& sums) { scalar::sumCells(columns, row, rule, 0, sums); },
+      [](const DepthSums* sums, const FullNodeRows& nodes, const DistortionRule& rule,
+         std::size_t count,
+         const PlaneFits& fits) { scalar::regress(sums, nodes, rule, 0, count, fits); },
+      [](const MomentRows& moments, const PlaneRows& planes, std::size_t count) {
+        scalar::regressMoments(moments, planes, 0, count);
       },
-      [](const DepthStrip<std::uint16_t>& strip, const ColumnSums& sums) {
-        scalar::sumColumns(strip, sums, 0);
-      },
-      [](const ColumnSums& columns, int cell_width, int cells, DepthSums* sums, float* counts) {
-        scalar::sumCells(columns, cell_width, 0, cells, sums, counts);
-      },
-      &scalar::sumTangents,
-      [](const DepthSums* sums, const FullNodeRows& nodes, std::size_t count, NodePlane* planes) {
-        scalar::regress(sums, nodes, 0, count, planes);
-      },
-      [](const NodeRows& nodes, const DistortionRule& rule, std::size_t count, float* distortions) {
-        scalar::weigh(nodes, rule, 0, count, distortions);
-      },
-      &scalar::residuals,
   };
   return kernels;
 }

@@ -3,27 +3,30 @@
 #include "planecloud_slam/plane_fit/tree_pruner.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace planecloud {
 namespace {
 
 /// What the coder spends on recorded frames, about.
-constexpr double kTileBits = 14.0;
-constexpr double kSplitBits = 1.5;
-constexpr double kNothingBits = 1.5;
+constexpr float kTileBits = 14.0F;
+constexpr float kSplitBits = 1.5F;
+constexpr float kNothingBits = 1.5F;
 /// A tile's mean error may be this many tolerances; what fits no better stays uncovered.
 constexpr float kMaxError = 2.0F;
 /// Covering comes first: a pixel without a plane counts as this many tolerances, more than all of
 /// the largest tile. So coverage never falls when more time lets the tree grow deeper.
-constexpr double kUncoveredError = 1e4;
+constexpr float kUncoveredError = 1e4F;
 /// Nodes between two looks at the clock.
 constexpr int kNodesAtOnce = 32;
 
 }  // namespace
 
 TreePruner::TreePruner(const MomentPyramid& pyramid, const TileFitter& fitter, double lambda)
-    : pyramid_(pyramid), fitter_(fitter), lambda_(lambda) {
+    : pyramid_(pyramid),
+      fitter_(fitter),
+      split_cost_(static_cast<float>(lambda) * kSplitBits),
+      tile_cost_(static_cast<float>(lambda) * kTileBits),
+      nothing_cost_(static_cast<float>(lambda) * kNothingBits) {
   const QuadtreeGrid& grid = pyramid.grid();
   levels_.resize(static_cast<std::size_t>(grid.levels()));
   queues_.resize(levels_.size());
@@ -37,17 +40,18 @@ TreePruner::TreePruner(const MomentPyramid& pyramid, const TileFitter& fitter, d
 template <typename Visit>
 void TreePruner::forChildren(const QuadtreeNode& node, Visit&& visit) const {
   if (node.level + 1 == static_cast<int>(levels_.size())) return;
-  const float* counts = pyramid_.rows(node.level + 1).counts;
+  const std::vector<Fill>& fills = pyramid_.fills(node.level + 1);
   const auto columns =
       static_cast<std::size_t>(levels_[static_cast<std::size_t>(node.level) + 1].columns);
   const int column = 2 * node.column;
   const int row = 2 * node.row;
   const std::size_t first =
       static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
-  if (counts[first] > 0.0F) visit(column, row, first);
-  if (counts[first + 1] > 0.0F) visit(column + 1, row, first + 1);
-  if (counts[first + columns] > 0.0F) visit(column, row + 1, first + columns);
-  if (counts[first + columns + 1] > 0.0F) visit(column + 1, row + 1, first + columns + 1);
+  const auto has_depth = [&](std::size_t i) { return fills[i] != Fill::kNothing; };
+  if (has_depth(first)) visit(column, row, first);
+  if (has_depth(first + 1)) visit(column + 1, row, first + 1);
+  if (has_depth(first + columns)) visit(column, row + 1, first + columns);
+  if (has_depth(first + columns + 1)) visit(column + 1, row + 1, first + columns + 1);
 }
 
 const std::vector<QuadtreeNode>& TreePruner::choose(const std::function<bool()>& give_up) {
@@ -68,7 +72,6 @@ const std::vector<QuadtreeNode>& TreePruner::choose(const std::function<bool()>&
 
 bool TreePruner::weighLevel(std::size_t i, const std::function<bool()>& give_up) {
   std::vector<QuadtreeNode>& queue = queues_[i];
-  if (!queue.empty()) fitter_.distortions(static_cast<int>(i), levels_[i].distortions);
   for (std::size_t j = 0; j < queue.size(); ++j) {
     if (j % kNodesAtOnce == 0 && give_up && give_up()) {
       dropFrom(queue, j);
@@ -96,28 +99,29 @@ void TreePruner::dropFrom(std::vector<QuadtreeNode>& queue, std::size_t first) {
 
 TreePruner::Node& TreePruner::weigh(const QuadtreeNode& node) {
   const std::size_t i = index(node);
-  const float count = pyramid_.rows(node.level).counts[i];
+  const float count = pyramid_.counts(node.level)[i];
   Node& state = level(node.level).nodes[i];
-  state = {kUncoveredError * count + lambda_ * kNothingBits, Choice::kNothing, true};
-  float distortion = level(node.level).distortions[i];
-  if (distortion < 0.0F) {
-    const std::optional<float> asked = fitter_.distortion(node);
-    if (!asked) return state;
-    distortion = *asked;
+  const float distortion = fitter_.distortion(node);
+  // Field by field, here and below: what is made whole and copied at once waits for its own stores.
+  state.open = true;
+  if (distortion < 0.0F || distortion > kMaxError * count) {
+    state.cost = kUncoveredError * count + nothing_cost_;
+    state.choice = Choice::kNothing;
+    return state;
   }
-  if (distortion > kMaxError * count) return state;
-  const double cost = distortion + lambda_ * kTileBits;
+  state.cost = distortion + tile_cost_;
+  state.choice = Choice::kTile;
   // A split makes a tile of each child with depth, or costs far more: is that worth a look?
+  state.open = distortion > split_cost_;
+  if (!state.open) return state;
   int children = 0;
   forChildren(node, [&](int, int, std::size_t) { ++children; });
-  const double least = lambda_ * (kSplitBits + kTileBits * children);
-  state = {cost, Choice::kTile, least < cost};
+  state.open = split_cost_ + tile_cost_ * static_cast<float>(children) < state.cost;
   return state;
 }
 
 void TreePruner::pushChildren(const QuadtreeNode& node, std::vector<QuadtreeNode>& queue) const {
   forChildren(node, [&](int column, int row, std::size_t) {
-    // Field by field: a node made whole and copied at once waits for its own stores.
     QuadtreeNode& child = queue.emplace_back();
     child.level = node.level + 1;
     child.column = column;
@@ -129,9 +133,11 @@ void TreePruner::merge(const QuadtreeNode& node) {
   Node& state = at(node);
   if (!state.open) return;
   const std::vector<Node>& children = level(node.level + 1).nodes;
-  double cost = lambda_ * kSplitBits;
+  float cost = split_cost_;
   forChildren(node, [&](int, int, std::size_t i) { cost += children[i].cost; });
-  if (cost < state.cost) state = {cost, Choice::kSplit, true};
+  if (cost >= state.cost) return;
+  state.cost = cost;
+  state.choice = Choice::kSplit;
 }
 
 void TreePruner::collect() {

@@ -27,7 +27,7 @@ class TreePruner {
  private:
   enum class Choice : std::uint8_t { kNothing, kTile, kSplit };
   struct Node {
-    double cost = 0.0;
+    float cost = 0.0F;
     Choice choice = Choice::kNothing;
     bool open = false;  ///< its children were weighed as well
   };
@@ -35,7 +35,6 @@ class TreePruner {
   struct Level {
     int columns = 0;
     std::vector<Node> nodes;
-    std::vector<float> distortions;  // of nodes without holes
   };
 
   [[nodiscard]] Level& level(int i) { return levels_[static_cast<std::size_t>(i)]; }
@@ -59,7 +58,7 @@ class TreePruner {
 
   const MomentPyramid& pyramid_;
   const TileFitter& fitter_;
-  double lambda_;
+  float split_cost_, tile_cost_, nothing_cost_;
   std::vector<Level> levels_;
   std::vector<std::vector<QuadtreeNode>> queues_;  // nodes weighed on each level
   std::vector<QuadtreeNode> tiles_;

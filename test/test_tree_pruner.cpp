@@ -53,27 +53,34 @@ TEST(TreePruner, MakesSmallerCloudsThatAreTruerThanTheSensor) {
             0.5 * trueError(scene.depth, scene));
 }
 
-TEST(TileFitter, WeighsAWholeLevelAsItWeighsNodes) {
+TEST(TileFitter, WeighsNodesByTheRootMeanSquareOfTheirResiduals) {
   const NoisyCorridor scene(4);
   for (const AcceptanceRule rule :
        {AcceptanceRule::kFixed, AcceptanceRule::kLinearInDepth, AcceptanceRule::kNoiseScaled}) {
     QuadtreeFitterOptions options;
     options.acceptance = rule;
-    MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels());
+    MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels(),
+                          TileFitter::distortionRule(options));
     const TileFitter fitter(pyramid, options);
     ASSERT_TRUE(pyramid.read(scene.depth.view(), nullptr));
     int known = 0;
     for (int level = 0; level < pyramid.grid().levels(); ++level) {
-      std::vector<float> distortions;
-      fitter.distortions(level, distortions);
-      const int columns = pyramid.grid().columns(level);
-      for (std::size_t i = 0; i < distortions.size(); ++i) {
-        if (distortions[i] < 0.0F) continue;
-        const int index = static_cast<int>(i);
-        const auto asked = fitter.distortion({level, index % columns, index / columns});
-        ASSERT_TRUE(asked.has_value());
-        ASSERT_NEAR(distortions[i], *asked, 1e-4F * *asked);
-        ++known;
+      for (int row = 0; row < pyramid.grid().rows(level); ++row) {
+        for (int column = 0; column < pyramid.grid().columns(level); ++column) {
+          const QuadtreeNode node{level, column, row};
+          const float distortion = fitter.distortion(node);
+          if (distortion < 0.0F) continue;
+          const double depth = 1.0 / pyramid.meanInverseDepth(node);
+          const double relative = 0.798 * std::abs(pyramid.regress(node).rms) * depth;
+          const double expected =
+              pyramid.count(node) * relative * depth /
+              (options.tolerance * (rule == AcceptanceRule::kNoiseScaled     ? depth * depth
+                                    : rule == AcceptanceRule::kLinearInDepth ? depth
+                                                                             : 1.0));
+          // Cells are weighed in pixels, from sums whose squares lose some 1e-7.
+          ASSERT_NEAR(distortion, expected, 1e-2 * expected + 1e-3 * pyramid.count(node));
+          ++known;
+        }
       }
     }
     EXPECT_GT(known, 15000);
@@ -96,7 +103,8 @@ TEST(TreePruner, SpendsFewerBytesTheMoreABitCosts) {
 
 TEST(TreePruner, EstimatesTheErrorThatALookAtThePixelsFinds) {
   const NoisyCorridor scene(3);
-  MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels());
+  MomentPyramid pyramid(scene.camera, {64, 64, 4}, vectorTileKernels(),
+                        TileFitter::distortionRule({}));
   ASSERT_TRUE(pyramid.read(scene.depth.view(), nullptr));
   const TileFitter fitter(pyramid, {});
   double estimated = 0.0;
@@ -106,8 +114,9 @@ TEST(TreePruner, EstimatesTheErrorThatALookAtThePixelsFinds) {
     for (int column = 0; column < pyramid.grid().columns(2); ++column) {
       const QuadtreeNode node{2, column, row};
       if (!fitter.fit(node)) continue;  // only where there is nothing but noise
-      estimated += fitter.estimate(node).depth_sum;
-      sampled += fitter.sample(node).depth_sum;
+      const TileFit estimate = fitter.estimate(node);
+      estimated += estimate.depth_sum;
+      sampled += fitter.sample(node, estimate.plane).depth_sum;
       measured += fitter.fit(node)->depth_sum;
     }
   }
