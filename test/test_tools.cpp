@@ -41,7 +41,7 @@ class ToolsTest : public testing::Test {
 
   /// Replays a few frames of the built-in world into folder `name`.
   [[nodiscard]] Outcome replayHallway(const std::string& name, const std::string& flags) const {
-    return run(REPLAY, "hallway:3:2 --max-frames 12 --output " + (folder_ / name) + " " + flags);
+    return run(REPLAY, "hallway:3:2 --max-frames 8 --output " + (folder_ / name) + " " + flags);
   }
 
   TemporaryFolder folder_;
@@ -135,7 +135,7 @@ TEST_F(ToolsTest, ReplayReportsItsKeys) {
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const auto report = nlohmann::json::parse(read("r/report.json"));
   const auto& robot = report.at("robots").at("robot2");
-  EXPECT_EQ(robot.at("frames"), 12);
+  EXPECT_EQ(robot.at("frames"), 8);
   for (const char* key : {"tracked", "lost", "keyframes", "path_m"}) {
     EXPECT_TRUE(robot.contains(key)) << key;
   }
