@@ -185,8 +185,11 @@ HWY_EXPORT(alignmentTarget);
 const AlignmentKernels& vectorAlignmentKernels() {
   static const AlignmentKernels kernels = [] {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return AlignmentKernels{HWY_DYNAMIC_DISPATCH(alignmentTarget)(), &HWY_DYNAMIC_DISPATCH(compare),
-                            vectorSum()};
+    AlignmentKernels chosen{};
+    chosen.name = HWY_DYNAMIC_DISPATCH(alignmentTarget)();
+    chosen.compare = &HWY_DYNAMIC_DISPATCH(compare);
+    addVectorSums(chosen);
+    return chosen;
   }();
   return kernels;
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/frontend_node/alignment_kernel.h"
 
-#include "planecloud_slam/frontend_node/alignment_kernel_scalar.h"
+#include <vector>
 
 namespace planecloud {
 
@@ -29,26 +29,15 @@ NormalEquations accumulateNormalEquations(const ReferencePoints& points,
 
 BlockScatter accumulateBlockScatter(const ReferencePoints& points, const ResidualView& residuals,
                                     const ResidualScale& scale, double nu) {
-  using Gradient = Eigen::Matrix<float, kUnknowns, 1>;
-  const Whitening whitening = makeWhitening(scale, nu);
-  std::vector<Gradient> gradients(static_cast<std::size_t>(points.blocks), Gradient::Zero());
-  for (std::size_t i = 0; i < points.count; ++i) {
-    if (residuals.seen[i] == 0.0F) continue;
-    const scalar::WhitenedPoint w = scalar::whiten(points, residuals, whitening, i);
-    const float e1 = w.weight * w.e1;
-    const float e2 = w.weight * w.e2;
-    Gradient& gradient = gradients[points.block[i]];
-    for (int k = 0; k < 6; ++k) {
-      const auto row = static_cast<std::size_t>(k);
-      gradient(k) += e1 * w.row1[row] + e2 * w.row2[row];
-    }
-    gradient(6) += e1 * w.offset;
-    gradient(7) += e1 * w.gain;
-  }
+  constexpr auto kLanes = static_cast<Eigen::Index>(ReferencePoints::kLanes);
+  using PartialSums = Eigen::Matrix<float, kUnknowns, kLanes, Eigen::RowMajor>;
+  std::vector<PartialSums> blocks(static_cast<std::size_t>(points.blocks), PartialSums::Zero());
+  vectorAlignmentKernels().sum_blocks(points, residuals, makeWhitening(scale, nu),
+                                      blocks.data()->data());
   BlockScatter scatter;
-  for (const Gradient& gradient : gradients) {
-    if (gradient.isZero(0.0F)) continue;
-    const StepVector g = gradient.cast<double>();
+  for (const PartialSums& block : blocks) {
+    if (block.isZero(0.0F)) continue;
+    const StepVector g = block.rowwise().sum().cast<double>();
     scatter.matrix += g * g.transpose();
     ++scatter.blocks;
   }

@@ -87,6 +87,10 @@ struct AlignmentKernels {
   /// Adds what all points contribute, upper triangle of the matrix only.
   void (*sum)(const ReferencePoints& points, const ResidualView& residuals,
               const Whitening& whitening, NormalEquations& equations);
+  /// Adds to the gradient of each block what its points contribute: `kUnknowns` times
+  /// `ReferencePoints::kLanes` partial sums a block.
+  void (*sum_blocks)(const ReferencePoints& points, const ResidualView& residuals,
+                     const Whitening& whitening, float* partial_sums);
 };
 
 /// Plain C++: the reference of the tests and the fallback.

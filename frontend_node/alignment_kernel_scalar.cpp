@@ -87,11 +87,27 @@ void sum(const ReferencePoints& points, const ResidualView& residuals, const Whi
   }
 }
 
+void sumBlocks(const ReferencePoints& points, const ResidualView& residuals,
+               const Whitening& whitening, float* partial_sums) {
+  for (std::size_t i = 0; i < points.count; ++i) {
+    if (residuals.seen[i] == 0.0F) continue;
+    const WhitenedPoint w = whiten(points, residuals, whitening, i);
+    const float e1 = w.weight * w.e1;
+    const float e2 = w.weight * w.e2;
+    constexpr std::size_t kLanes = ReferencePoints::kLanes;
+    float* sums = partial_sums + points.block[i] * kUnknowns * kLanes + i % kLanes;
+    for (std::size_t k = 0; k < 6; ++k) sums[k * kLanes] += e1 * w.row1[k] + e2 * w.row2[k];
+    sums[6 * kLanes] += e1 * w.offset;
+    sums[7 * kLanes] += e1 * w.gain;
+  }
+}
+
 }  // namespace
 }  // namespace scalar
 
 const AlignmentKernels& scalarAlignmentKernels() {
-  static const AlignmentKernels kernels{"scalar", &scalar::compare, &scalar::sum};
+  static const AlignmentKernels kernels{"scalar", &scalar::compare, &scalar::sum,
+                                        &scalar::sumBlocks};
   return kernels;
 }
 

@@ -6,11 +6,7 @@
 
 namespace planecloud {
 
-/// See `AlignmentKernels::sum`.
-using SumKernel = void (*)(const ReferencePoints&, const ResidualView&, const Whitening&,
-                           NormalEquations&);
-
-/// The sum for the best instruction set this processor has.
-[[nodiscard]] SumKernel vectorSum();
+/// Adds `sum` and `sum_blocks` for the instruction set that Highway has chosen.
+void addVectorSums(AlignmentKernels& kernels);
 
 }  // namespace planecloud

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cstdint>
 
 #include "planecloud_slam/frontend_node/alignment_kernel_simd.h"
 
@@ -48,58 +49,81 @@ HWY_INLINE void storeRow(V a1, V a2, V a3, V u, V v, V q, float* row) {
   hn::Store(hn::MulSub(u, a2, hn::Mul(v, a1)), d, row + 5 * kWidest);
 }
 
-/// See scalar::whiten for the algebra.
+/// Whitened residuals of some points and their Jacobian: see scalar::whiten.
+struct WhitenedPoints {
+  HWY_ALIGN float row1[kTwist * kWidest];  ///< of e1 (grey) over the twist
+  HWY_ALIGN float row2[kTwist * kWidest];  ///< of e2 (inverse depth) over the twist
+  V offset, gain;                          ///< of e1 over brightness
+  V e1, e2;
+  V weight;  ///< 0 for points not seen
+
+  HWY_INLINE WhitenedPoints(const ReferencePoints& points, const ResidualView& residuals,
+                            const Whitening& whitening, std::size_t i) {
+    const D d;
+    const V u = hn::LoadU(d, points.u.data() + i), v = hn::LoadU(d, points.v.data() + i);
+    const V q = hn::LoadU(d, points.q.data() + i);
+    const V inverse_q = hn::Set(d, whitening.inverse_q);
+    const V to_q = hn::Set(d, whitening.slope * whitening.inverse_grey / whitening.inverse_q);
+    const V r_q = hn::LoadU(d, residuals.q + i);
+    offset = hn::Set(d, whitening.inverse_grey);
+    e2 = hn::Mul(r_q, inverse_q);
+    e1 = hn::Mul(hn::NegMulAdd(hn::Set(d, whitening.slope), r_q, hn::LoadU(d, residuals.grey + i)),
+                 offset);
+    const V nu = hn::Set(d, whitening.nu);
+    weight = hn::Div(hn::Mul(hn::LoadU(d, residuals.seen + i), hn::Add(nu, hn::Set(d, 2.0F))),
+                     hn::Add(nu, square()));
+    gain = hn::Mul(hn::Sub(hn::LoadU(d, points.grey.data() + i), hn::Set(d, kMiddleGrey)),
+                   hn::Set(d, kInverseGreySpread * whitening.inverse_grey));
+    const V b1 = hn::Mul(hn::LoadU(d, points.q_u.data() + i), inverse_q);
+    const V b2 = hn::Mul(hn::LoadU(d, points.q_v.data() + i), inverse_q);
+    const V b3 = hn::NegMulAdd(b2, v, hn::NegMulAdd(b1, u, hn::Mul(q, inverse_q)));
+    const V i1 = hn::Mul(hn::LoadU(d, points.grey_u.data() + i), offset);
+    const V i2 = hn::Mul(hn::LoadU(d, points.grey_v.data() + i), offset);
+    const V i3 = hn::Neg(hn::MulAdd(i1, u, hn::Mul(i2, v)));
+    storeRow(hn::NegMulAdd(to_q, b1, i1), hn::NegMulAdd(to_q, b2, i2), hn::NegMulAdd(to_q, b3, i3),
+             u, v, q, row1);
+    storeRow(b1, b2, b3, u, v, q, row2);
+  }
+  HWY_INLINE V square() const { return hn::MulAdd(e1, e1, hn::Mul(e2, e2)); }
+};
+
 HWY_INLINE void addPoints(const ReferencePoints& points, const ResidualView& residuals,
                           const Whitening& whitening, std::size_t i, float* sums) {
   const D d;
-  const V u = hn::LoadU(d, points.u.data() + i), v = hn::LoadU(d, points.v.data() + i);
-  const V q = hn::LoadU(d, points.q.data() + i);
-  const V inverse_grey = hn::Set(d, whitening.inverse_grey);
-  const V inverse_q = hn::Set(d, whitening.inverse_q);
-  const V to_q = hn::Set(d, whitening.slope * whitening.inverse_grey / whitening.inverse_q);
-  const V r_q = hn::LoadU(d, residuals.q + i);
-  const V e2 = hn::Mul(r_q, inverse_q);
-  const V e1 =
-      hn::Mul(hn::NegMulAdd(hn::Set(d, whitening.slope), r_q, hn::LoadU(d, residuals.grey + i)),
-              inverse_grey);
-  const V square = hn::MulAdd(e1, e1, hn::Mul(e2, e2));
-  const V nu = hn::Set(d, whitening.nu);
-  const V weight = hn::Div(hn::Mul(hn::LoadU(d, residuals.seen + i), hn::Add(nu, hn::Set(d, 2.0F))),
-                           hn::Add(nu, square));
-  const V gain = hn::Mul(hn::Sub(hn::LoadU(d, points.grey.data() + i), hn::Set(d, kMiddleGrey)),
-                         hn::Set(d, kInverseGreySpread * whitening.inverse_grey));
-
-  HWY_ALIGN float row1[kTwist * kWidest];
-  HWY_ALIGN float row2[kTwist * kWidest];
-  const V b1 = hn::Mul(hn::LoadU(d, points.q_u.data() + i), inverse_q);
-  const V b2 = hn::Mul(hn::LoadU(d, points.q_v.data() + i), inverse_q);
-  const V b3 = hn::NegMulAdd(b2, v, hn::NegMulAdd(b1, u, hn::Mul(q, inverse_q)));
-  const V i1 = hn::Mul(hn::LoadU(d, points.grey_u.data() + i), inverse_grey);
-  const V i2 = hn::Mul(hn::LoadU(d, points.grey_v.data() + i), inverse_grey);
-  const V i3 = hn::Neg(hn::MulAdd(i1, u, hn::Mul(i2, v)));
-  storeRow(hn::NegMulAdd(to_q, b1, i1), hn::NegMulAdd(to_q, b2, i2), hn::NegMulAdd(to_q, b3, i3), u,
-           v, q, row1);
-  storeRow(b1, b2, b3, u, v, q, row2);
-
-  const V weighted_e1 = hn::Mul(weight, e1), weighted_e2 = hn::Mul(weight, e2);
-  const V weighted_offset = hn::Mul(weight, inverse_grey), weighted_gain = hn::Mul(weight, gain);
+  const WhitenedPoints w(points, residuals, whitening, i);
+  const V weighted_e1 = hn::Mul(w.weight, w.e1), weighted_e2 = hn::Mul(w.weight, w.e2);
+  const V weighted_offset = hn::Mul(w.weight, w.offset), weighted_gain = hn::Mul(w.weight, w.gain);
   for (int r = 0; r < kTwist; ++r) {
-    const V at1 = hn::Load(d, row1 + r * kWidest), at2 = hn::Load(d, row2 + r * kWidest);
-    const V weighted1 = hn::Mul(weight, at1), weighted2 = hn::Mul(weight, at2);
+    const V at1 = hn::Load(d, w.row1 + r * kWidest), at2 = hn::Load(d, w.row2 + r * kWidest);
+    const V weighted1 = hn::Mul(w.weight, at1), weighted2 = hn::Mul(w.weight, at2);
     for (int c = r; c < kTwist; ++c) {
-      accumulate2(weighted1, hn::Load(d, row1 + c * kWidest), weighted2,
-                  hn::Load(d, row2 + c * kWidest), sums);
+      accumulate2(weighted1, hn::Load(d, w.row1 + c * kWidest), weighted2,
+                  hn::Load(d, w.row2 + c * kWidest), sums);
     }
     accumulate2(weighted_e1, at1, weighted_e2, at2, sums);
     accumulate(weighted_offset, at1, sums);
     accumulate(weighted_gain, at1, sums);
   }
-  accumulate(weighted_offset, inverse_grey, sums);
-  accumulate(weighted_offset, gain, sums);
-  accumulate(weighted_gain, gain, sums);
-  accumulate(weighted_e1, inverse_grey, sums);
-  accumulate(weighted_e1, gain, sums);
-  accumulate(weight, square, sums);
+  accumulate(weighted_offset, w.offset, sums);
+  accumulate(weighted_offset, w.gain, sums);
+  accumulate(weighted_gain, w.gain, sums);
+  accumulate(weighted_e1, w.offset, sums);
+  accumulate(weighted_e1, w.gain, sums);
+  accumulate(w.weight, w.square(), sums);
+}
+
+/// Gradients of the points from `i` on, `kUnknowns` rows of lanes.
+HWY_INLINE void storeGradients(const ReferencePoints& points, const ResidualView& residuals,
+                               const Whitening& whitening, std::size_t i, float* gradients) {
+  const D d;
+  const WhitenedPoints w(points, residuals, whitening, i);
+  const V e1 = hn::Mul(w.weight, w.e1), e2 = hn::Mul(w.weight, w.e2);
+  for (int r = 0; r < kTwist; ++r) {
+    const V at1 = hn::Load(d, w.row1 + r * kWidest), at2 = hn::Load(d, w.row2 + r * kWidest);
+    hn::Store(hn::MulAdd(e1, at1, hn::Mul(e2, at2)), d, gradients + r * kWidest);
+  }
+  hn::Store(hn::Mul(e1, w.offset), d, gradients + kTwist * kWidest);
+  hn::Store(hn::Mul(e1, w.gain), d, gradients + (kTwist + 1) * kWidest);
 }
 
 /// Adds the float sums to `equations` and clears them.
@@ -137,6 +161,35 @@ void sum(const ReferencePoints& points, const ResidualView& residuals, const Whi
   }
 }
 
+/// All of them are of one block. Points are in the order of pixels, so mostly they are.
+HWY_INLINE bool areAlike(const std::uint16_t* blocks, std::size_t count) {
+  int different = 0;
+  for (std::size_t i = 1; i < count; ++i) different |= blocks[i] ^ blocks[0];
+  return different == 0;
+}
+
+void sumBlocks(const ReferencePoints& points, const ResidualView& residuals,
+               const Whitening& whitening, float* partial_sums) {
+  const D d;
+  constexpr std::size_t kSize = kUnknowns * kWidest;
+  HWY_ALIGN float added[kSize];
+  for (std::size_t i = 0; i < residuals.count; i += hn::Lanes(d)) {
+    storeGradients(points, residuals, whitening, i, added);
+    const std::uint16_t* blocks = points.block.data() + i;
+    if (areAlike(blocks, hn::Lanes(d))) {
+      float* sums = partial_sums + blocks[0] * kSize;
+      for (std::size_t k = 0; k < kSize; k += kWidest) {
+        hn::StoreU(hn::Add(hn::LoadU(d, sums + k), hn::Load(d, added + k)), d, sums + k);
+      }
+      continue;
+    }
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      float* sums = partial_sums + blocks[lane] * kSize + lane;
+      for (std::size_t k = 0; k < kSize; k += kWidest) sums[k] += added[k + lane];
+    }
+  }
+}
+
 }  // namespace planecloud::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -144,10 +197,11 @@ HWY_AFTER_NAMESPACE();
 namespace planecloud {
 
 HWY_EXPORT(sum);
+HWY_EXPORT(sumBlocks);
 
-SumKernel vectorSum() {
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return &HWY_DYNAMIC_DISPATCH(sum);
+void addVectorSums(AlignmentKernels& kernels) {
+  kernels.sum = &HWY_DYNAMIC_DISPATCH(sum);
+  kernels.sum_blocks = &HWY_DYNAMIC_DISPATCH(sumBlocks);
 }
 
 }  // namespace planecloud

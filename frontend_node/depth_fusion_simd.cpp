@@ -1,5 +1,7 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
+
 #include "planecloud_slam/frontend_node/depth_fusion_scalar.h"
 
 // Compiled once for every instruction set that Highway knows here, chosen at run time.
@@ -55,23 +57,26 @@ struct VectorWarp {
   float shift[3];
 };
 
-/// The four pixels around each position, as four vectors.
-struct Corners {
-  HWY_ALIGN float a[8];
-  HWY_ALIGN float b[8];
-  HWY_ALIGN float c[8];
-  HWY_ALIGN float e[8];
-
+/// The four pixels around each position.
+class Corners {
+ public:
   HWY_INLINE void fetch(ImageView<float> depth, const std::int32_t* at, std::size_t lanes) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const float* upper = depth.row(0) + at[lane];
-      const float* lower = upper + depth.stride();
-      a[lane] = upper[0];
-      b[lane] = upper[1];
-      c[lane] = lower[0];
-      e[lane] = lower[1];
+      std::memcpy(upper_ + 2 * lane, upper, 2 * sizeof(float));
+      std::memcpy(lower_ + 2 * lane, upper + depth.stride(), 2 * sizeof(float));
     }
   }
+  HWY_INLINE void upper(FusionV& left, FusionV& right) const {
+    hn::LoadInterleaved2(FusionD(), upper_, left, right);
+  }
+  HWY_INLINE void lower(FusionV& left, FusionV& right) const {
+    hn::LoadInterleaved2(FusionD(), lower_, left, right);
+  }
+
+ private:
+  HWY_ALIGN float upper_[16];
+  HWY_ALIGN float lower_[16];
 };
 
 void improve(const FusionWarp& warp, const FusionRow& row, ImageView<float> depth, float* mean,
@@ -98,8 +103,9 @@ void improve(const FusionWarp& warp, const FusionRow& row, ImageView<float> dept
     const FusionV fy = hn::Sub(y, hn::ConvertTo(d, line));
     hn::Store(hn::Add(hn::Mul(line, stride), column), di, at);
     corners.fetch(depth, at, static_cast<std::size_t>(lanes));
-    const FusionV a = hn::Load(d, corners.a), b = hn::Load(d, corners.b);
-    const FusionV c = hn::Load(d, corners.c), e = hn::Load(d, corners.e);
+    FusionV a, b, c, e;
+    corners.upper(a, b);
+    corners.lower(c, e);
     const FusionV low = hn::Min(hn::Min(a, b), hn::Min(c, e));
     const FusionV high = hn::Max(hn::Max(a, b), hn::Max(c, e));
     const auto measured = hn::And(hn::And(hn::Gt(a, zero), hn::Gt(b, zero)),

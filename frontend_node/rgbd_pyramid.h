@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "planecloud_slam/frontend_node/dense_tracker_options.h"
+#include "planecloud_slam/frontend_node/pyramid_kernels.h"
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 
 namespace planecloud {
-
-/// Grey value and inverse depth of a pixel side by side: tracking reads both at the same place.
-struct GreyDepth {
-  float grey = 0.0F;           ///< 0..255
-  float inverse_depth = 0.0F;  ///< [1/m]; 0: none
-};
 
 /// A pinhole camera without distortion at the resolution of one pyramid level.
 struct LevelCamera {
@@ -53,8 +48,7 @@ class RgbdPyramid {
   [[nodiscard]] const std::vector<RgbdLevel>& levels() const { return levels_; }
 
  private:
-  float min_depth_;
-  float max_depth_;
+  DepthRange depth_range_;
   int first_halvings_;
   std::vector<RgbdLevel> finer_;  ///< levels above the finest tracked one, only steps to it
   std::vector<RgbdLevel> levels_;

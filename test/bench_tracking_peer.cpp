@@ -25,6 +25,7 @@ cv::Ptr<cv::rgbd::OdometryFrame> peerFrame(const RgbdFrame& frame) {
 }
 
 /// Frame to frame, as the class is used in its own samples: the previous frame's pyramid is kept.
+/// Time counts from the frame as it comes, with its rectification, for both.
 TrackingRun trackWithPeer(const FrameSet& set) {
   cv::Ptr<cv::rgbd::RgbdOdometry> odometry =
       cv::rgbd::RgbdOdometry::create(cameraMatrix(set.camera.rectified()), 0.2F, 8.0F);
@@ -34,12 +35,12 @@ TrackingRun trackWithPeer(const FrameSet& set) {
   cv::Ptr<cv::rgbd::OdometryFrame> previous;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (const auto& frame : set.frames) {
+    const double start = threadTime();
     cv::Ptr<cv::rgbd::OdometryFrame> current =
         peerFrame(rectifier ? rectifier->rectify(*frame) : *frame);
     FrameResult result;
     result.stamp = frame->stamp;
     result.status = TrackingStatus::kTracked;
-    const double start = threadTime();
     cv::Mat motion;
     if (previous && odometry->compute(current, previous, motion)) {
       Eigen::Isometry3d T_previous_current = Eigen::Isometry3d::Identity();

@@ -82,6 +82,29 @@ TEST(AlignmentKernel, VectorAndScalarSumsAgreeToRounding) {
             1e-4 * compared.equations.vector.norm() + 1e-6 * scale);
 }
 
+TEST(AlignmentKernel, VectorAndScalarBlocksAgreeToRounding) {
+  const RgbdPyramid reference = pyramidAt(pose(0, 0, 0), 1);
+  const RgbdPyramid current = pyramidAt(pose(0.1, 0, 0, 0, 0.05, 0), 2);
+  const TrackingReference reference_points(reference, DenseTrackerOptions());
+  const ReferencePoints& points = reference_points.levels().front();
+  const Comparison comparison(scalarAlignmentKernels(), points, current.levels().front());
+  constexpr std::size_t kSize = kUnknowns * ReferencePoints::kLanes;
+  std::vector<float> a(static_cast<std::size_t>(points.blocks) * kSize, 0.0F), b(a);
+  const Whitening whitening{1.0F / 8.0F, 1.0F / 0.03F, 12.0F, 5.0F};
+  scalarAlignmentKernels().sum_blocks(points, comparison.residuals.view(), whitening, a.data());
+  vectorAlignmentKernels().sum_blocks(points, comparison.residuals.view(), whitening, b.data());
+  int filled = 0;
+  for (std::size_t row = 0; row < a.size(); row += ReferencePoints::kLanes) {
+    float sum_a = 0.0F, sum_b = 0.0F, size = 0.0F;
+    for (std::size_t i = row; i < row + ReferencePoints::kLanes; ++i) {
+      sum_a += a[i], sum_b += b[i], size += std::abs(a[i]);
+    }
+    EXPECT_NEAR(sum_a, sum_b, 1e-3F * size + 1e-6F);
+    filled += size > 0.0F ? 1 : 0;
+  }
+  EXPECT_GT(filled, 100);
+}
+
 TEST(AlignmentKernel, PaddingIsNeverSeen) {
   const RgbdPyramid reference = pyramidAt(pose(0, 0, 0), 1);
   const TrackingReference points(reference, DenseTrackerOptions());

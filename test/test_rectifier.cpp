@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "planecloud_slam/frontend_node/rectifier.h"
+#include "planecloud_slam/frontend_node/remap_kernel.h"
 #include "synthetic_scene.h"
 
 namespace planecloud {
@@ -51,6 +54,37 @@ TEST(Rectifier, MakesNoDepthBetweenTwoSurfaces) {
   }
   for (const float z : Rectifier(distortedCamera()).rectify(frame).depth) {
     EXPECT_TRUE(z == 1.0F || z == 4.0F || std::isnan(z)) << z;
+  }
+}
+
+TEST(Rectifier, VectorAndScalarLoopsGiveTheSameBits) {
+  constexpr int kWidth = 53;
+  constexpr int kHeight = 7;
+  constexpr std::size_t kPixels = kWidth * kHeight;
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> uniform(0, 1 << 20);
+  std::vector<std::uint8_t> grey(kPixels);
+  std::vector<float> depth(kPixels);
+  for (std::uint8_t& value : grey) value = static_cast<std::uint8_t>(uniform(random));
+  for (float& value : depth) value = 1e-3F * static_cast<float>(uniform(random));
+  std::vector<std::int32_t> at;
+  std::vector<std::uint8_t> right, down;
+  for (std::size_t i = 0; i < 203; ++i) {
+    const int index = uniform(random) % (kHeight - 1) * kWidth + uniform(random) % (kWidth - 1);
+    at.push_back(i % 9 == 0 ? ~index : index);
+    right.push_back(static_cast<std::uint8_t>(uniform(random) % (kRemapSteps + 1)));
+    down.push_back(static_cast<std::uint8_t>(uniform(random) % (kRemapSteps + 1)));
+  }
+  const RemapSource source{grey.data(), depth.data(), kWidth};
+  const RemapRow row{at.data(), right.data(), down.data()};
+  std::vector<std::uint8_t> grey_a(at.size()), grey_b(at.size());
+  std::vector<float> depth_a(at.size()), depth_b(at.size());
+  scalarRemap()(source, row, at.size(), grey_a.data(), depth_a.data());
+  vectorRemap()(source, row, at.size(), grey_b.data(), depth_b.data());
+  EXPECT_EQ(grey_a, grey_b);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    EXPECT_EQ(std::isnan(depth_a[i]), i % 9 == 0);
+    EXPECT_TRUE(depth_a[i] == depth_b[i] || std::isnan(depth_a[i] + depth_b[i]));
   }
 }
 

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "planecloud_slam/frontend_node/rgbd_pyramid.h"
 #include "synthetic_scene.h"
@@ -75,6 +77,42 @@ TEST(RgbdPyramid, RefusesDistortionAndTooManyLevels) {
   DenseTrackerOptions deep;
   deep.levels = 6;
   EXPECT_THROW(RgbdPyramid(synthetic::camera(), deep), std::invalid_argument);
+}
+
+template <typename Row>
+void expectSameBits(const Row& scalar, const Row& vector) {
+  for (std::size_t i = 0; i < scalar.size(); ++i) {
+    ASSERT_EQ(scalar[i].grey, vector[i].grey) << i;
+    ASSERT_EQ(scalar[i].inverse_depth, vector[i].inverse_depth) << i;
+  }
+}
+
+TEST(PyramidKernels, GiveTheSameBits) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+  constexpr int kMost = 41;
+  std::vector<std::uint8_t> grey[2];
+  std::vector<float> depth[2];
+  std::vector<GreyDepth> level[2];
+  for (int row = 0; row < 2; ++row) {
+    for (int i = 0; i < 2 * kMost; ++i) {
+      grey[row].push_back(static_cast<std::uint8_t>(255.0F * uniform(random)));
+      float z = i % 11 < 6 ? 1.0F + 0.06F * uniform(random) : 9.0F * uniform(random);
+      if (i % 5 == 0) z = i % 2 == 0 ? 0.0F : std::numeric_limits<float>::quiet_NaN();
+      depth[row].push_back(z);
+      level[row].push_back({255.0F * uniform(random), z > 0.0F ? 1.0F / z : 0.0F});
+    }
+  }
+  const RowPair rows{{grey[0].data(), grey[1].data()}, {depth[0].data(), depth[1].data()}};
+  for (const int count : {1, 7, 8, 16, kMost}) {
+    std::vector<GreyDepth> a(static_cast<std::size_t>(count)), b(a.size());
+    scalarPyramidKernels().halve_images(rows, {0.2F, 8.0F}, count, a.data());
+    vectorPyramidKernels().halve_images(rows, {0.2F, 8.0F}, count, b.data());
+    expectSameBits(a, b);
+    scalarPyramidKernels().halve_level(level[0].data(), level[1].data(), count, a.data());
+    vectorPyramidKernels().halve_level(level[0].data(), level[1].data(), count, b.data());
+    expectSameBits(a, b);
+  }
 }
 
 }  // namespace
