@@ -23,8 +23,12 @@ constexpr double kMotionSlack = 0.05;  // [m] and [rad]
 constexpr double kLeastNormalGrey = 3.0;
 /// Of a frame in what is normal: the last second counts.
 constexpr double kLearningShare = 0.05;
+/// Grey residuals count as this many times what is normal at most, and inliers as no fewer than the
+/// slack: what moves through the view must not become normal.
+constexpr double kMostGrowth = 1.5;
 /// After a loss nothing vouches for an alignment but itself.
 constexpr double kDoubtlessOverlap = 0.2;
+constexpr double kDoubtlessGrowth = 2.5;
 constexpr double kInlierSlack = 0.1;
 /// Share of a motion that wheels may be wrong by when they slip.
 constexpr double kWheelShare = 0.2;
@@ -131,9 +135,13 @@ double LossDetector::greyLimit(double growth) const {
 }
 
 void LossDetector::learn(const Alignment& alignment) {
-  const double share = normal_grey_ == 0.0 ? 1.0 : kLearningShare;
-  normal_grey_ += share * (alignment.scale.sigma_grey - normal_grey_);
-  normal_inliers_ += share * (alignment.inliers - normal_inliers_);
+  const bool is_first = normal_grey_ == 0.0;
+  const double share = is_first ? 1.0 : kLearningShare;
+  const double grey = alignment.scale.sigma_grey;
+  const double most = kMostGrowth * std::max(normal_grey_, kLeastNormalGrey);
+  normal_grey_ += share * ((is_first ? grey : std::min(grey, most)) - normal_grey_);
+  const double inliers = std::max(alignment.inliers, normal_inliers_ - kInlierSlack);
+  normal_inliers_ += share * (inliers - normal_inliers_);
 }
 
 std::string LossDetector::findDoubt(const Alignment& alignment) const {
@@ -145,7 +153,7 @@ std::string LossDetector::findDoubt(const Alignment& alignment) const {
   if (alignment.inliers < inliers) {
     return compare("the share of agreeing depths is", alignment.inliers, "<", inliers);
   }
-  const double grey_limit = greyLimit(options_.max_residual_growth);
+  const double grey_limit = greyLimit(std::min(options_.max_residual_growth, kDoubtlessGrowth));
   if (alignment.scale.sigma_grey > grey_limit) {
     return compare("the grey residuals are", alignment.scale.sigma_grey, ">", grey_limit);
   }

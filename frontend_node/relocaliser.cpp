@@ -13,6 +13,8 @@ namespace {
 /// What alignments in both directions may differ by: more, and one of them is elsewhere.
 constexpr double kMaxDisagreement = 0.03;      // [m]
 constexpr double kMaxTurnDisagreement = 0.02;  // [rad]
+/// Share of either image's points that the other must see.
+constexpr double kLeastOverlap = 0.08;
 
 /// Views that look alike may be nearer or farther.
 std::vector<Eigen::Isometry3d> startsAround(const Eigen::Isometry3d& turn) {
@@ -30,22 +32,51 @@ Relocaliser::Relocaliser(const HistoryOptions& options, const DenseTrackerOption
   options_.check();
 }
 
+/// Who has driven on sees little of what was seen before, but nearly nothing else: it is enough
+/// that one of the images shares much with the other.
+bool Relocaliser::isDoubtless(Alignment alignment, double overlap, const Live& live) {
+  if (alignment.overlap < kLeastOverlap) return false;
+  alignment.overlap = overlap;
+  return live.is_doubtless(alignment);
+}
+
+std::optional<Relocaliser::BothWays> Relocaliser::alignBothWays(
+    const Side& first, const Side& second, const std::vector<Eigen::Isometry3d>& T_first_second,
+    const Live& live) {
+  BothWays found;
+  found.second_in_first = tracker_.align(first.reference, second.pyramid, {T_first_second, {}});
+  if (!isDoubtless(found.second_in_first, 1.0, live)) return std::nullopt;
+  const Eigen::Isometry3d& T = found.second_in_first.T_reference_current;
+  found.first_in_second = tracker_.align(second.reference, first.pyramid, {{T.inverse()}, {}});
+  const double overlap = std::max(found.second_in_first.overlap, found.first_in_second.overlap);
+  if (!isDoubtless(found.second_in_first, overlap, live) ||
+      !isDoubtless(found.first_in_second, overlap, live)) {
+    return std::nullopt;
+  }
+  const Eigen::Isometry3d loop = T * found.first_in_second.T_reference_current;
+  if (loop.translation().norm() > kMaxDisagreement || rotationAngle(loop) > kMaxTurnDisagreement) {
+    return std::nullopt;
+  }
+  return found;
+}
+
 std::optional<Relocalisation> Relocaliser::alignWith(const ExpectedPlace& place, const Live& live) {
   auto reference = place.reference;
   if (!reference) {
     reference = std::make_shared<const TrackingReference>(place.view->pyramid, tracking_);
   }
-  const Alignment from_view = tracker_.align(*reference, live.pyramid, {place.T_view_live, {}});
-  if (!live.is_doubtless(from_view)) return std::nullopt;
-  const Alignment to_view =
-      tracker_.align(live.reference, place.view->pyramid,
-                     {{from_view.T_reference_current.inverse()}, Brightness{}});
-  if (!live.is_doubtless(to_view)) return std::nullopt;
-  const Eigen::Isometry3d loop = from_view.T_reference_current * to_view.T_reference_current;
-  if (loop.translation().norm() > kMaxDisagreement || rotationAngle(loop) > kMaxTurnDisagreement) {
-    return std::nullopt;
+  const Side view_side{*reference, place.view->pyramid};
+  const Side live_side{live.reference, live.pyramid};
+  if (auto found = alignBothWays(view_side, live_side, place.T_view_live, live)) {
+    return Relocalisation{place.view, std::move(reference), found->second_in_first};
   }
-  return Relocalisation{place.view, std::move(reference), from_view};
+  // Far ahead, what the live image shows is all in the view, but not the other way round.
+  std::vector<Eigen::Isometry3d> T_live_view;
+  for (const Eigen::Isometry3d& T : place.T_view_live) T_live_view.push_back(T.inverse());
+  if (auto found = alignBothWays(live_side, view_side, T_live_view, live)) {
+    return Relocalisation{place.view, std::move(reference), found->first_in_second};
+  }
+  return std::nullopt;
 }
 
 std::vector<ExpectedPlace> Relocaliser::findAlike(const RgbdPyramid& live,

@@ -50,6 +50,18 @@ class Relocaliser {
     TrackingReference reference;
     const Judge& is_doubtless;
   };
+  /// One of two images that are aligned with each other.
+  struct Side {
+    const TrackingReference& reference;
+    const RgbdPyramid& pyramid;
+  };
+  struct BothWays {
+    Alignment second_in_first, first_in_second;
+  };
+  [[nodiscard]] std::optional<BothWays> alignBothWays(
+      const Side& first, const Side& second, const std::vector<Eigen::Isometry3d>& T_first_second,
+      const Live& live);
+  [[nodiscard]] static bool isDoubtless(Alignment alignment, double overlap, const Live& live);
   [[nodiscard]] std::optional<Relocalisation> alignWith(const ExpectedPlace& place,
                                                         const Live& live);
   [[nodiscard]] std::vector<ExpectedPlace> findAlike(

@@ -14,6 +14,8 @@ namespace {
 constexpr float kEdgeSpread = 0.1F;
 constexpr int kWindowRadius = 2;
 constexpr int kMinWindowPixels = 10;
+/// In the place of a squared gradient.
+constexpr float kNeverChosen = -1.0F;
 
 /// Inverse depth around a pixel: value [1/m] and slope [1/m per pixel].
 struct SurfaceFit {
@@ -82,7 +84,7 @@ float gradientThreshold(const Image<float>& squares, double share, double floor)
   constexpr float kBinsPerLevel = 4.0F;
   std::array<std::size_t, 512> histogram{};
   for (const float square : squares) {
-    const auto bin = static_cast<std::size_t>(kBinsPerLevel * std::sqrt(square));
+    const auto bin = static_cast<std::size_t>(kBinsPerLevel * std::sqrt(std::max(0.0F, square)));
     ++histogram[std::min(bin, histogram.size() - 1)];
   }
   const auto allowed = static_cast<std::size_t>(share * static_cast<double>(squares.size()));
@@ -93,6 +95,79 @@ float gradientThreshold(const Image<float>& squares, double share, double floor)
       std::max(static_cast<float>(bin) / kBinsPerLevel, static_cast<float>(floor));
   return threshold * threshold;
 }
+
+/// An earlier image at one level.
+class EarlierLevel {
+ public:
+  EarlierLevel(const EarlierImage& image, std::size_t level)
+      : level_(image.pyramid->levels()[level]),
+        rotation_(image.T_earlier_this.linear().cast<float>()),
+        translation_(image.T_earlier_this.translation().cast<float>()) {}
+
+  /// The point at (u, v, 1) / q lies where all around it farther things were seen.
+  [[nodiscard]] bool sawThrough(float u, float v, float q) const {
+    const Eigen::Vector3f point = rotation_ * Eigen::Vector3f(u, v, 1.0F) + q * translation_;
+    if (!(point.z() > 0.0F)) return false;
+    const LevelCamera& camera = level_.camera;
+    const float x = camera.fx * point.x() / point.z() + camera.cx + 0.5F;
+    const float y = camera.fy * point.y() / point.z() + camera.cy + 0.5F;
+    const auto width = static_cast<float>(camera.width - 1);
+    const auto height = static_cast<float>(camera.height - 1);
+    if (!(x >= 1.0F && x < width && y >= 1.0F && y < height)) return false;
+    const float inverse_depth = q / point.z();
+    for (int dy = -1; dy <= 1; ++dy) {
+      const GreyDepth* row = level_.pixels.row(static_cast<int>(y) + dy) + static_cast<int>(x);
+      for (int dx = -1; dx <= 1; ++dx) {
+        const float seen = row[dx].inverse_depth;
+        if (!(seen > 0.0F && seen < kFarther * inverse_depth)) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  /// Of the inverse depth of what has moved in.
+  static constexpr float kFarther = 0.8F;
+
+  const RgbdLevel& level_;
+  Eigen::Matrix3f rotation_;
+  Eigen::Vector3f translation_;
+};
+
+/// Pixels of one level on what has moved into the view since an earlier image.
+class MovedIn {
+ public:
+  MovedIn(const RgbdPyramid& pyramid, const std::vector<EarlierImage>& earlier)
+      : level_(std::min<std::size_t>(1, pyramid.levels().size() - 1)) {
+    if (earlier.empty()) return;
+    const RgbdLevel& current = pyramid.levels()[level_];
+    const LevelCamera& camera = current.camera;
+    pixels_ = Image<std::uint8_t>(camera.width, camera.height, 0);
+    for (const EarlierImage& image : earlier) {
+      const EarlierLevel seen(image, level_);
+      for (int y = 0; y < camera.height; ++y) {
+        const float v = (static_cast<float>(y) - camera.cy) / camera.fy;
+        for (int x = 0; x < camera.width; ++x) {
+          const float q = current.pixels(x, y).inverse_depth;
+          if (!(q > 0.0F) || pixels_(x, y) != 0) continue;
+          const float u = (static_cast<float>(x) - camera.cx) / camera.fx;
+          pixels_(x, y) = seen.sawThrough(u, v, q) ? 1 : 0;
+        }
+      }
+    }
+  }
+  /// Of a pixel of any level.
+  [[nodiscard]] bool at(std::size_t level, int x, int y) const {
+    if (pixels_.empty()) return false;
+    if (level < level_) return pixels_(x >> 1, y >> 1) != 0;
+    const auto finer = static_cast<int>(level - level_);
+    return pixels_(x << finer, y << finer) != 0;
+  }
+
+ private:
+  std::size_t level_;  ///< the second finest tells well enough
+  Image<std::uint8_t> pixels_;
+};
 
 void appendPoint(const RgbdLevel& level, int x, int y, const SurfaceFit& fit,
                  ReferencePoints& points) {
@@ -119,10 +194,17 @@ void pad(ReferencePoints& points) {
   points.block.resize(padded, 0);
 }
 
-ReferencePoints choosePoints(const RgbdLevel& level, double textured_share, int block_side,
+ReferencePoints choosePoints(const RgbdPyramid& pyramid, std::size_t number,
+                             const MovedIn& moved_in, double textured_share, int block_side,
                              const DenseTrackerOptions& options) {
+  const RgbdLevel& level = pyramid.levels()[number];
   const Image<GreyDepth>& pixels = level.pixels;
-  const Image<float> squares = squaredGradients(pixels);
+  Image<float> squares = squaredGradients(pixels);
+  for (int y = 0; y < squares.height(); ++y) {
+    for (int x = 0; x < squares.width(); ++x) {
+      if (moved_in.at(number, x, y)) squares(x, y) = kNeverChosen;
+    }
+  }
   const float threshold = gradientThreshold(squares, textured_share, options.min_gradient);
   const int side = std::max(block_side, 1);
   const int blocks_across = (pixels.width() + side - 1) / side;
@@ -130,7 +212,7 @@ ReferencePoints choosePoints(const RgbdLevel& level, double textured_share, int 
   for (int y = kWindowRadius; y < pixels.height() - kWindowRadius; ++y) {
     for (int x = kWindowRadius; x < pixels.width() - kWindowRadius; ++x) {
       const bool on_grid = x % options.flat_grid_step == 0 && y % options.flat_grid_step == 0;
-      if (!(on_grid || squares(x, y) > threshold)) continue;
+      if (!(on_grid || squares(x, y) > threshold) || squares(x, y) == kNeverChosen) continue;
       if (!(pixels(x, y).inverse_depth > 0.0F) || isBehindEdge(pixels, x, y)) continue;
       const std::optional<SurfaceFit> fit = fitSurface(pixels, x, y);
       if (!fit) continue;
@@ -145,12 +227,14 @@ ReferencePoints choosePoints(const RgbdLevel& level, double textured_share, int 
 
 }  // namespace
 
-TrackingReference::TrackingReference(const RgbdPyramid& pyramid,
-                                     const DenseTrackerOptions& options) {
+TrackingReference::TrackingReference(const RgbdPyramid& pyramid, const DenseTrackerOptions& options,
+                                     const std::vector<EarlierImage>& earlier) {
   double share = options.textured_share;
   int block_side = options.information_block;
-  for (const RgbdLevel& level : pyramid.levels()) {
-    levels_.push_back(choosePoints(level, std::min(share, 1.0), block_side, options));
+  const MovedIn moved_in(pyramid, earlier);
+  for (std::size_t i = 0; i < pyramid.levels().size(); ++i) {
+    levels_.push_back(
+        choosePoints(pyramid, i, moved_in, std::min(share, 1.0), block_side, options));
     share *= 2.0;
     block_side /= 2;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -32,12 +33,20 @@ struct ReferencePoints {
   [[nodiscard]] std::size_t paddedCount() const { return u.size(); }
 };
 
+/// An image of the same place taken a little earlier.
+struct EarlierImage {
+  const RgbdPyramid* pyramid = nullptr;
+  Eigen::Isometry3d T_earlier_this = Eigen::Isometry3d::Identity();
+};
+
 /// The keyframe as tracking sees it: built once, compared with many frames.
 class TrackingReference {
  public:
   /// Chooses the pixels that inform: the strongest gradients, and a sparse grid of all others for
-  /// their depth. Pixels next to a depth edge are left out, unless they lie on its near side.
-  TrackingReference(const RgbdPyramid& pyramid, const DenseTrackerOptions& options);
+  /// their depth. Pixels next to a depth edge are left out, unless they lie on its near side, and
+  /// what has moved into the view: points at places that one of the `earlier` images saw through.
+  TrackingReference(const RgbdPyramid& pyramid, const DenseTrackerOptions& options,
+                    const std::vector<EarlierImage>& earlier = {});
 
   /// Finest first.
   [[nodiscard]] const std::vector<ReferencePoints>& levels() const { return levels_; }

@@ -11,6 +11,10 @@ namespace {
 /// Frames farther apart than this do not count as time on usable images [s].
 constexpr double kLongestFrameGap = 0.2;
 
+/// Keyframes that tell what has moved into a new one: who walks by is gone from a place within as
+/// many.
+constexpr std::size_t kEarlierImages = 4;
+
 /// A motion goes on as it was for no longer than this [s].
 constexpr double kLongestExtrapolation = 3.0;
 
@@ -229,13 +233,25 @@ void TrackingSession::openKeyframe(const RgbdFrame& frame, const Eigen::Isometry
   completeKeyframe();
   reference_.view = std::make_shared<const KeyframeView>(
       KeyframeView{next_id_, segment_, T_odom_camera, pyramid_, describeView(pyramid_)});
-  reference_.points = std::make_shared<const TrackingReference>(pyramid_, options_.tracking);
+  reference_.points = std::make_shared<const TrackingReference>(pyramid_, options_.tracking,
+                                                                earlierImages(T_odom_camera));
   ++next_id_.number;
   open_.open(frame, reference_, std::move(edges));
   brightness_ = Brightness{};
   T_reference_last_ = T_reference_predicted_ = Eigen::Isometry3d::Identity();
   usable_lost_ = 0.0;
   selector_.reset();
+}
+
+/// The last keyframes of this segment, as seen from a camera at `T_odom_camera`.
+std::vector<EarlierImage> TrackingSession::earlierImages(
+    const Eigen::Isometry3d& T_odom_camera) const {
+  std::vector<EarlierImage> images;
+  for (auto view = history_.rbegin(); view != history_.rend(); ++view) {
+    if (images.size() == kEarlierImages || (*view)->segment != segment_) break;
+    images.push_back({&(*view)->pyramid, (*view)->T_odom_camera.inverse() * T_odom_camera});
+  }
+  return images;
 }
 
 void TrackingSession::switchTo(const Relocalisation& found) {

@@ -53,6 +53,8 @@ class TrackingSession {
   [[nodiscard]] FrameResult bridgeByWheels(const RgbdFrame& frame);
   [[nodiscard]] FrameResult openSegment(const RgbdFrame& frame);
   [[nodiscard]] TrackedMotion motionOf(const Alignment& alignment, double stamp) const;
+  [[nodiscard]] std::vector<EarlierImage> earlierImages(
+      const Eigen::Isometry3d& T_odom_camera) const;
   void switchTo(const Relocalisation& found);
   void openKeyframe(const RgbdFrame& frame, const Eigen::Isometry3d& T_odom_camera,
                     std::vector<RelativePoseEdge> edges);
