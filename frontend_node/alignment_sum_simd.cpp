@@ -16,7 +16,6 @@ namespace planecloud::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, ReferencePoints::kLanes>;
-using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 
 constexpr std::size_t kWidest = ReferencePoints::kLanes;

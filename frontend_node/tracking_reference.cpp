@@ -156,15 +156,23 @@ class MovedIn {
       }
     }
   }
-  /// Of a pixel of any level.
+  /// Makes the gradients of such pixels, of any level, `kNeverChosen`.
+  void exclude(std::size_t level, Image<float>& squares) const {
+    if (pixels_.empty()) return;
+    for (int y = 0; y < squares.height(); ++y) {
+      for (int x = 0; x < squares.width(); ++x) {
+        if (at(level, x, y)) squares(x, y) = kNeverChosen;
+      }
+    }
+  }
+
+ private:
   [[nodiscard]] bool at(std::size_t level, int x, int y) const {
-    if (pixels_.empty()) return false;
     if (level < level_) return pixels_(x >> 1, y >> 1) != 0;
     const auto finer = static_cast<int>(level - level_);
     return pixels_(x << finer, y << finer) != 0;
   }
 
- private:
   std::size_t level_;  ///< the second finest tells well enough
   Image<std::uint8_t> pixels_;
 };
@@ -200,11 +208,7 @@ ReferencePoints choosePoints(const RgbdPyramid& pyramid, std::size_t number,
   const RgbdLevel& level = pyramid.levels()[number];
   const Image<GreyDepth>& pixels = level.pixels;
   Image<float> squares = squaredGradients(pixels);
-  for (int y = 0; y < squares.height(); ++y) {
-    for (int x = 0; x < squares.width(); ++x) {
-      if (moved_in.at(number, x, y)) squares(x, y) = kNeverChosen;
-    }
-  }
+  moved_in.exclude(number, squares);
   const float threshold = gradientThreshold(squares, textured_share, options.min_gradient);
   const int side = std::max(block_side, 1);
   const int blocks_across = (pixels.width() + side - 1) / side;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
-#include <utility>
 
 #include "planecloud_slam/plane_fit/position_regression.h"
 
@@ -137,9 +135,7 @@ void MomentPyramid::merge(int parent_level) {
       }
       parents.depth[parent] = sum;
       parents.counts[parent] = n;
-      parents.fills[parent] = n == 0.0F           ? Fill::kNothing
-                              : n == full[parent] ? Fill::kAll
-                                                  : Fill::kPart;
+      parents.fills[parent] = fillOf(n, full[parent]);
       if (parents.fills[parent] != Fill::kPart) continue;
       parents.tangents[parent] = mergeTangents(parent_level + 1, child);
       holes_.add(parent, moments(parent_level, parent));

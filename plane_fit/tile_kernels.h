@@ -86,6 +86,11 @@ struct alignas(16) DepthSums {
 /// How much of a node has depth.
 enum class Fill : std::uint8_t { kNothing, kPart, kAll };
 
+/// Of `count` pixels with depth among `area`.
+[[nodiscard]] inline Fill fillOf(float count, float area) {
+  return count == 0.0F ? Fill::kNothing : count == area ? Fill::kAll : Fill::kPart;
+}
+
 /// Sums of a row of cells, an array for each.
 struct CellSums {
   DepthSums* depth = nullptr;

@@ -31,10 +31,6 @@ void sumColumns(const DepthBlock<Pixel>& strip, const ColumnSums& sums, int firs
   }
 }
 
-inline Fill fillOf(float count, float area) {
-  return count == 0.0F ? Fill::kNothing : count == area ? Fill::kAll : Fill::kPart;
-}
-
 /// `squares`: mean square of the residuals.
 inline float weigh(const DistortionRule& rule, float n, float q, double squares) {
   float scale = rule.factor * n;
