@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
@@ -15,8 +16,8 @@ struct FusionWarp {
   Eigen::Matrix3f R = Eigen::Matrix3f::Identity();
   Eigen::Vector3f t = Eigen::Vector3f::Zero();  ///< [m]
   CameraIntrinsics camera;
-  float gate = 0.0F;              ///< of one inverse depth [1/m]
-  float max_observations = 0.0F;  ///< that count in a mean
+  float gate = 0.0F;                  ///< of one inverse depth [1/m]
+  std::uint8_t max_observations = 0;  ///< that count in a mean
 };
 
 /// One row of pixels with the tangents of their rays.
@@ -33,7 +34,7 @@ struct FusionKernels {
   /// `observations` frames, by what `depth` [m] of a frame shows of them. `warp` leads from the
   /// keyframe into the frame.
   void (*improve)(const FusionWarp& warp, const FusionRow& row, ImageView<float> depth, float* mean,
-                  float* observations);
+                  std::uint8_t* observations);
   /// Where the pixels of a row of `depth` [m] are seen: `at` the index of the nearest pixel, -1
   /// when outside or without depth, and their inverse depth there [1/m].
   void (*project)(const FusionWarp& warp, const FusionRow& row, const float* depth, int* at,

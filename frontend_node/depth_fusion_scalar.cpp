@@ -8,7 +8,7 @@ const FusionKernels& scalarFusionKernels() {
   static const FusionKernels kernels{
       "scalar",
       [](const FusionWarp& warp, const FusionRow& row, ImageView<float> depth, float* mean,
-         float* observations) { scalar::improve(warp, row, depth, mean, observations, 0); },
+         std::uint8_t* observations) { scalar::improve(warp, row, depth, mean, observations, 0); },
       [](const FusionWarp& warp, const FusionRow& row, const float* depth, int* at,
          float* inverse_depth) { scalar::project(warp, row, depth, at, inverse_depth, 0); },
   };

@@ -48,7 +48,7 @@ inline float sampleDepth(ImageView<float> depth, float x, float y, float toleran
 
 /// Pixels [begin, row.count) of `FusionKernels::improve`.
 inline void improve(const FusionWarp& warp, const FusionRow& row, ImageView<float> depth,
-                    float* mean, float* observations, int begin) {
+                    float* mean, std::uint8_t* observations, int begin) {
   for (int i = begin; i < row.count; ++i) {
     const SeenPoint seen = warpPoint(warp, row.u[i], row.v, mean[i]);
     if (!isInside(warp, seen)) continue;
@@ -57,10 +57,10 @@ inline void improve(const FusionWarp& warp, const FusionRow& row, ImageView<floa
     if (z == 0.0F) continue;
     // A depth error is the same length in both views, an inverse depth error is not.
     const float deviation = (predicted - z) * mean[i] * mean[i];
-    const float n = observations[i];
+    const auto n = static_cast<float>(observations[i]);
     if (deviation * deviation * n > warp.gate * warp.gate * (n + 1.0F)) continue;
     mean[i] += deviation / (n + 1.0F);
-    observations[i] = std::min(n + 1.0F, warp.max_observations);
+    if (observations[i] < warp.max_observations) ++observations[i];
   }
 }
 

@@ -80,13 +80,15 @@ class Corners {
 };
 
 void improve(const FusionWarp& warp, const FusionRow& row, ImageView<float> depth, float* mean,
-             float* observations) {
+             std::uint8_t* observations) {
   const FusionD d;
   const FusionDI di;
+  const hn::Rebind<std::uint8_t, FusionD> bytes;
   const VectorWarp vector(warp, row.v);
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const FusionV zero = hn::Zero(d), one = hn::Set(d, 1.0F), gate = hn::Set(d, warp.gate);
   const auto stride = hn::Set(di, static_cast<std::int32_t>(depth.stride()));
+  const auto most = hn::Set(di, std::int32_t{warp.max_observations});
   HWY_ALIGN std::int32_t at[8];
   Corners corners;
   int i = 0;
@@ -117,13 +119,15 @@ void improve(const FusionWarp& warp, const FusionRow& row, ImageView<float> dept
     const FusionV bottom = hn::MulAdd(fx, hn::Sub(e, c), c);
     const FusionV z = hn::MulAdd(fy, hn::Sub(bottom, top), top);
     const FusionV deviation = hn::Mul(hn::Sub(predicted, z), hn::Mul(q, q));
-    const FusionV n = hn::LoadU(d, observations + i);
+    const auto seen = hn::PromoteTo(di, hn::LoadU(bytes, observations + i));
+    const FusionV n = hn::ConvertTo(d, seen);
     const FusionV more = hn::Add(n, one);
     const auto agrees =
         hn::Le(hn::Mul(hn::Mul(deviation, deviation), n), hn::Mul(hn::Mul(gate, gate), more));
     const auto taken = hn::And(hn::And(inside, one_surface), agrees);
     hn::StoreU(hn::IfThenElse(taken, hn::Add(q, hn::Div(deviation, more)), q), d, mean + i);
-    hn::StoreU(hn::IfThenElse(taken, hn::Min(more, hn::Set(d, warp.max_observations)), n), d,
+    const auto counted = hn::Min(hn::Add(seen, hn::Set(di, 1)), most);
+    hn::StoreU(hn::DemoteTo(bytes, hn::IfThenElse(hn::RebindMask(di, taken), counted, seen)), bytes,
                observations + i);
   }
   scalar::improve(warp, row, depth, mean, observations, i);

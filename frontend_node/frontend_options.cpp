@@ -88,7 +88,7 @@ void LocalMapOptions::check() const {
   checkRange("local_map/sigma", sigma, 1e-5, 1.0);
   checkRange("local_map/gate", gate, 0.5, 20.0);
   checkRange("local_map/interval", interval, 1, 100);
-  checkRange("local_map/max_observations", max_observations, 1, 1000);
+  checkRange("local_map/max_observations", max_observations, 1, 255);
 }
 
 void FrontendOptions::check() const {

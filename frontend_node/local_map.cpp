@@ -27,7 +27,7 @@ LocalMap::LocalMap(const LocalMapOptions& options, const CameraIntrinsics& camer
     throw std::invalid_argument("the local map needs a camera without distortion");
   }
   inverse_depth_ = Image<float>(camera.width, camera.height, 0.0F);
-  observations_ = Image<float>(camera.width, camera.height, 0.0F);
+  observations_ = Image<std::uint8_t>(camera.width, camera.height, 0);
   tangents_.resize(static_cast<std::size_t>(camera.width));
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
     tangents_[i] = static_cast<float>((static_cast<double>(i) - camera.cx) / camera.fx);
@@ -42,7 +42,7 @@ void LocalMap::open(ImageView<float> depth) {
     for (int x = 0; x < camera_.width; ++x) {
       const float z = depth(x, y);
       inverse_depth_(x, y) = isDepth(z) ? 1.0F / z : 0.0F;
-      observations_(x, y) = isDepth(z) ? 1.0F : 0.0F;
+      observations_(x, y) = isDepth(z) ? 1 : 0;
     }
   }
 }
@@ -56,7 +56,7 @@ void LocalMap::fuse(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_
 FusionWarp LocalMap::warp(const Eigen::Isometry3d& T) const {
   return {T.linear().cast<float>(), T.translation().cast<float>(), camera_,
           static_cast<float>(options_.gate * options_.sigma),
-          static_cast<float>(options_.max_observations)};
+          static_cast<std::uint8_t>(options_.max_observations)};
 }
 
 FusionRow LocalMap::row(int y) const {
@@ -76,9 +76,9 @@ void LocalMap::fillHoles(ImageView<float> depth, const Eigen::Isometry3d& T_keyf
   for (int y = frames_ / options_.interval % kFillRows; y < camera_.height; y += kFillRows) {
     vectorFusionKernels().project(motion, row(y), depth.row(y), pixels_.data(), seen_.data());
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      if (pixels_[i] < 0 || observations_.begin()[pixels_[i]] > 0.0F) continue;
+      if (pixels_[i] < 0 || observations_.begin()[pixels_[i]] > 0) continue;
       inverse_depth_.begin()[pixels_[i]] = seen_[i];
-      observations_.begin()[pixels_[i]] = 1.0F;
+      observations_.begin()[pixels_[i]] = 1;
     }
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "planecloud_slam/frontend_node/depth_fusion.h"
@@ -18,7 +19,7 @@ struct LocalMapOptions {
   double sigma = 0.006;       ///< standard deviation of one inverse depth [1/m], [1e-5, 1]
   double gate = 3.0;          ///< fuse within this many standard deviations, [0.5, 20]
   int interval = 2;           ///< every how many-th tracked frame is fused, [1, 100]
-  int max_observations = 30;  ///< frames that count in a pixel's mean at most, [1, 1000]
+  int max_observations = 30;  ///< frames that count in a pixel's mean at most, [1, 255]
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -60,12 +61,12 @@ class LocalMap {
 
   LocalMapOptions options_;
   CameraIntrinsics camera_;
-  Image<float> inverse_depth_;   ///< mean [1/m], 0: none
-  Image<float> observations_;    ///< frames in the mean
-  int frames_ = 0;               ///< offered to this keyframe
-  std::vector<float> tangents_;  ///< of the columns
-  std::vector<int> pixels_;      ///< of one row: where it is seen
-  std::vector<float> seen_;      ///< of one row: its inverse depth there [1/m]
+  Image<float> inverse_depth_;        ///< mean [1/m], 0: none
+  Image<std::uint8_t> observations_;  ///< frames in the mean
+  int frames_ = 0;                    ///< offered to this keyframe
+  std::vector<float> tangents_;       ///< of the columns
+  std::vector<int> pixels_;           ///< of one row: where it is seen
+  std::vector<float> seen_;           ///< of one row: its inverse depth there [1/m]
 };
 
 }  // namespace planecloud

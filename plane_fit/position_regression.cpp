@@ -9,9 +9,8 @@
 
 namespace planecloud {
 
-TangentSums sumTangents(const PositionSums& sums, const CellTangents& cell) {
-  const float u = *cell.u, u_x = *cell.u_right, u_y = *cell.u_down;
-  const float v = *cell.v, v_x = *cell.v_right, v_y = *cell.v_down;
+TangentSums sumTangents(const PositionSums& sums, const LocalTangents& tangents) {
+  const auto [u, u_x, u_y, v, v_x, v_y] = tangents;
   // Sums of u times 1, x and y; then the same for v.
   const float u_sum = u * sums.n + u_x * sums.x + u_y * sums.y;
   const float ux_sum = u * sums.x + u_x * sums.xx + u_y * sums.xy;
@@ -31,13 +30,13 @@ PositionSums allPositions(const TileRect& rect) {
   const float n = w * h;
   return {n,         n * x,
           n * y,     n * x * (2.0F * w - 1.0F) / 3.0F,
-          n * x * y, n * y * (2.0F * h - 1.0F) / 3.0F};
+          n * x * y, n * y * (2.0F * h - 1.0F) / 3.0F,
+          15};
 }
 
-NodePlane regressPositions(const PositionSums& p, const DepthSums& sums, const CellTangents& cell,
-                           const TileRect& rect) {
-  const float u_x = *cell.u_right, u_y = *cell.u_down;
-  const float v_x = *cell.v_right, v_y = *cell.v_down;
+NodePlane regressPositions(const PositionSums& p, const DepthSums& sums,
+                           const LocalTangents& tangents, const TileRect& rect) {
+  const auto [u, u_x, u_y, v, v_x, v_y] = tangents;
   const float inverse_det = 1.0F / (u_x * v_y - u_y * v_x);
   const double exact_inverse_n = 1.0 / double{p.n};
   const auto inverse_n = static_cast<float>(exact_inverse_n);
@@ -45,8 +44,8 @@ NodePlane regressPositions(const PositionSums& p, const DepthSums& sums, const C
   const float mean_y = p.y * inverse_n;
   const float mean = sums.q * inverse_n;
   // Inverse depth times position, about the means.
-  const float qu = sums.qu - *cell.u * sums.q;
-  const float qv = sums.qv - *cell.v * sums.q;
+  const float qu = sums.qu - u * sums.q;
+  const float qv = sums.qv - v * sums.q;
   const float qx = (v_y * qu - u_y * qv) * inverse_det - mean_x * sums.q;
   const float qy = (u_x * qv - v_x * qu) * inverse_det - mean_y * sums.q;
   const float xx = p.xx - mean_x * p.x;
@@ -68,7 +67,7 @@ NodePlane regressPositions(const PositionSums& p, const DepthSums& sums, const C
   plane.alpha = (v_y * right - v_x * down) * inverse_det;
   plane.beta = (u_x * down - u_y * right) * inverse_det;
   const float first = mean - right * mean_x - down * mean_y;
-  plane.gamma = first - plane.alpha * *cell.u - plane.beta * *cell.v;
+  plane.gamma = first - plane.alpha * u - plane.beta * v;
   const double squares = double{sums.qq} - double{sums.q} * sums.q * exact_inverse_n;
   const auto rest = static_cast<float>(squares) - right * qx - down * qy;
   plane.rms = std::sqrt(std::max(0.0F, rest * inverse_n));

@@ -10,12 +10,12 @@ namespace planecloud {
 /// The sums of a rectangle without holes, about its first pixel.
 [[nodiscard]] PositionSums allPositions(const TileRect& rect);
 
-/// Sums of the tangents over pixels of a cell in which tangents are affine (`cell`: of it alone).
-[[nodiscard]] TangentSums sumTangents(const PositionSums& positions, const CellTangents& cell);
+/// Sums of the tangents over pixels of a node in which they are affine.
+[[nodiscard]] TangentSums sumTangents(const PositionSums& positions, const LocalTangents& tangents);
 
-/// The regression of a cell on pixel positions, whose scatter tells exactly whether pixels span a
-/// direction, and from there to tangents; `rect` has the cell's size.
+/// The regression of a node on pixel positions, whose scatter tells exactly whether pixels span a
+/// direction, and from there to tangents; `rect` has the node's size.
 [[nodiscard]] NodePlane regressPositions(const PositionSums& positions, const DepthSums& sums,
-                                         const CellTangents& cell, const TileRect& rect);
+                                         const LocalTangents& tangents, const TileRect& rect);
 
 }  // namespace planecloud

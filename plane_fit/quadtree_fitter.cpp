@@ -232,6 +232,7 @@ void QuadtreeFitter::Impl::pushRoots() {
 
 void QuadtreeFitter::Impl::pushChildren(const QuadtreeNode& node) {
   if (node.level + 1 == pyramid_.grid().levels()) return;
+  pyramid_.split(node);
   for (const int row : {2 * node.row, 2 * node.row + 1}) {
     for (const int column : {2 * node.column, 2 * node.column + 1}) {
       const QuadtreeNode child{node.level + 1, column, row};

@@ -70,13 +70,6 @@ QuadtreeGrid::QuadtreeGrid(const QuadtreeLayout& layout, int width, int height) 
   cell_at_y_ = cellsAt(y_);
 }
 
-TileRect QuadtreeGrid::rect(const QuadtreeNode& node) const {
-  const int cells = cellsPerSide(node.level);
-  const int x = cellX(node.column * cells);
-  const int y = cellY(node.row * cells);
-  return {x, y, cellX((node.column + 1) * cells) - x, cellY((node.row + 1) * cells) - y};
-}
-
 std::optional<QuadtreeNode> QuadtreeGrid::find(const TileRect& rect) const {
   const bool inside = rect.x >= 0 && rect.x < width() && rect.y >= 0 && rect.y < height();
   if (!inside || rect.area() == 0) return std::nullopt;

@@ -47,7 +47,12 @@ class QuadtreeGrid {
   [[nodiscard]] int cellsPerSide(int level) const { return 1 << (levels_ - 1 - level); }
 
   /// The node's pixels; of area 0 when it lies beyond the border.
-  [[nodiscard]] TileRect rect(const QuadtreeNode& node) const;
+  [[nodiscard]] TileRect rect(const QuadtreeNode& node) const {
+    const int cells = cellsPerSide(node.level);
+    const int x = cellX(node.column * cells);
+    const int y = cellY(node.row * cells);
+    return {x, y, cellX((node.column + 1) * cells) - x, cellY((node.row + 1) * cells) - y};
+  }
   /// The coarsest node with exactly these pixels.
   [[nodiscard]] std::optional<QuadtreeNode> find(const TileRect& rect) const;
 

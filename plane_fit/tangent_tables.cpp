@@ -27,6 +27,11 @@ void prepareRegression(const TangentSums& sums, std::size_t node, FullNodes& ful
   full.inverse_vv[node] = static_cast<float>(inverse.vv);
 }
 
+QuadtreeNode nodeAt(const QuadtreeGrid& grid, int level, std::size_t i) {
+  const int index = static_cast<int>(i);
+  return {level, index % grid.columns(level), index / grid.columns(level)};
+}
+
 }  // namespace
 
 void FullNodes::resize(std::size_t nodes) {
@@ -36,26 +41,25 @@ void FullNodes::resize(std::size_t nodes) {
   }
 }
 
-void AffineTangents::resize(std::size_t cells) {
+void AffineTangents::resize(std::size_t nodes) {
   for (std::vector<float>* values : {&u, &u_right, &u_down, &v, &v_right, &v_down}) {
-    values->resize(cells, 0.0F);
+    values->resize(nodes, 0.0F);
   }
 }
 
-TangentTables::TangentTables(const Camera& camera, const QuadtreeGrid& grid)
+TangentTables::TangentTables(const Camera& camera, const QuadtreeGrid& grid, int finest)
     : u_(camera.width(), camera.height()),
       v_(camera.width(), camera.height()),
-      levels_(static_cast<std::size_t>(grid.levels())) {
-  for (int i = 0; i < grid.levels(); ++i) {
+      levels_(static_cast<std::size_t>(finest) + 1) {
+  for (int i = 0; i <= finest; ++i) {
     Level& level = levels_[static_cast<std::size_t>(i)];
-    level.columns = grid.columns(i);
     const auto nodes = static_cast<std::size_t>(grid.columns(i) * grid.rows(i));
     level.full.resize(nodes);
     level.sums.resize(nodes);
   }
   tabulatePixels(camera, grid);
-  tabulateCells(grid);
-  for (std::size_t parent = levels_.size() - 1; parent-- > 0;) mergeLevel(parent);
+  tabulateFinest(grid);
+  for (std::size_t parent = levels_.size() - 1; parent-- > 0;) mergeLevel(parent, grid);
   prepareRegressions(grid);
 }
 
@@ -78,28 +82,27 @@ void TangentTables::tabulatePixels(const Camera& camera, const QuadtreeGrid& gri
   }
 }
 
-void TangentTables::tabulateCells(const QuadtreeGrid& grid) {
-  Level& cells = levels_.back();
-  cells_.resize(cells.sums.size());
-  for (std::size_t i = 0; i < cells.sums.size(); ++i) {
-    const int index = static_cast<int>(i);
-    const TileRect rect =
-        grid.rect({grid.levels() - 1, index % cells.columns, index / cells.columns});
+void TangentTables::tabulateFinest(const QuadtreeGrid& grid) {
+  const int finest = static_cast<int>(levels_.size()) - 1;
+  Level& nodes = levels_.back();
+  finest_.resize(nodes.sums.size());
+  for (std::size_t i = 0; i < nodes.sums.size(); ++i) {
+    const TileRect rect = grid.rect(nodeAt(grid, finest, i));
     TileMoments sums;
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
       for (int x = rect.x; x < rect.x + rect.width; ++x) {
         sums.add(u_(x, y), v_(x, y), 0.0);
       }
     }
-    cells.full.n[i] = static_cast<float>(sums.n);
-    cells.sums[i] = {static_cast<float>(sums.u), static_cast<float>(sums.v),
+    nodes.full.n[i] = static_cast<float>(sums.n);
+    nodes.sums[i] = {static_cast<float>(sums.u), static_cast<float>(sums.v),
                      static_cast<float>(sums.uu), static_cast<float>(sums.uv),
                      static_cast<float>(sums.vv)};
-    if (rect.area() > 0) approximateCell(rect, i);
+    if (rect.area() > 0) approximate(rect, i);
   }
 }
 
-void TangentTables::approximateCell(const TileRect& rect, std::size_t cell) {
+void TangentTables::approximate(const TileRect& rect, std::size_t node) {
   TileMoments u, v;  // regressions of the tangents on pixel positions
   for (int y = 0; y < rect.height; ++y) {
     for (int x = 0; x < rect.width; ++x) {
@@ -110,34 +113,32 @@ void TangentTables::approximateCell(const TileRect& rect, std::size_t cell) {
   const Eigen::Vector3f u_plane = regressInverseDepth(u).cast<float>();
   const Eigen::Vector3f v_plane = regressInverseDepth(v).cast<float>();
   // What is one pixel wide or high has no slope across: any that can be inverted.
-  cells_.u[cell] = u_plane.z();
-  cells_.u_right[cell] = rect.width > 1 ? u_plane.x() : 1.0F;
-  cells_.u_down[cell] = u_plane.y();
-  cells_.v[cell] = v_plane.z();
-  cells_.v_right[cell] = v_plane.x();
-  cells_.v_down[cell] = rect.height > 1 ? v_plane.y() : 1.0F;
+  finest_.u[node] = u_plane.z();
+  finest_.u_right[node] = rect.width > 1 ? u_plane.x() : 1.0F;
+  finest_.u_down[node] = u_plane.y();
+  finest_.v[node] = v_plane.z();
+  finest_.v_right[node] = v_plane.x();
+  finest_.v_down[node] = rect.height > 1 ? v_plane.y() : 1.0F;
 }
 
-void TangentTables::mergeLevel(std::size_t parent_level) {
+void TangentTables::mergeLevel(std::size_t parent_level, const QuadtreeGrid& grid) {
   Level& parents = levels_[parent_level];
   const Level& children = levels_[parent_level + 1];
-  const auto columns = static_cast<std::size_t>(children.columns);
+  const auto columns = static_cast<std::size_t>(grid.columns(static_cast<int>(parent_level) + 1));
   for (std::size_t i = 0; i < children.sums.size(); ++i) {
-    const std::size_t parent =
-        i / columns / 2 * static_cast<std::size_t>(parents.columns) + i % columns / 2;
+    const std::size_t parent = i / columns / 2 * (columns / 2) + i % columns / 2;
     parents.full.n[parent] += children.full.n[i];
     parents.sums[parent] += children.sums[i];
   }
 }
 
 void TangentTables::prepareRegressions(const QuadtreeGrid& grid) {
-  for (int i = 0; i + 1 < grid.levels(); ++i) {
-    Level& level = levels_[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    Level& level = levels_[i];
     for (std::size_t j = 0; j < level.sums.size(); ++j) {
       if (level.full.n[j] == 0.0F) continue;
       prepareRegression(level.sums[j], j, level.full);
-      const int index = static_cast<int>(j);
-      measureReach(grid.rect({i, index % level.columns, index / level.columns}), j, level.full);
+      measureReach(grid.rect(nodeAt(grid, static_cast<int>(i), j)), j, level.full);
     }
   }
 }

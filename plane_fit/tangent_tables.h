@@ -12,8 +12,7 @@
 
 namespace planecloud {
 
-/// What regression needs of the nodes of one level when they have no holes (see `FullNodeRows`);
-/// of cells only `n` is kept.
+/// What regression needs of the nodes of one level when they have no holes (see `FullNodeRows`).
 struct FullNodes {
   std::vector<float> n, inverse_n;  ///< pixels
   std::vector<float> mean_u, mean_v, reach_u, reach_v;
@@ -28,13 +27,16 @@ struct FullNodes {
   }
 };
 
-/// Of every cell, row-major (see `CellTangents`): the affine function nearest to its pixels'
-/// tangents.
+/// Of every node of the finest level, row-major (see `CellTangents`): the affine function nearest
+/// to its pixels' tangents.
 struct AffineTangents {
   std::vector<float> u, u_right, u_down, v, v_right, v_down;
 
-  void resize(std::size_t cells);
-  /// The cells from `first` on.
+  void resize(std::size_t nodes);
+  [[nodiscard]] LocalTangents at(std::size_t i) const {
+    return {u[i], u_right[i], u_down[i], v[i], v_right[i], v_down[i]};
+  }
+  /// The nodes from `first` on.
   [[nodiscard]] CellTangents from(std::size_t first) const {
     return {&u[first], &u_right[first], &u_down[first], &v[first], &v_right[first], &v_down[first]};
   }
@@ -42,35 +44,35 @@ struct AffineTangents {
 
 /// What the moments of an image owe to the camera alone, computed once: the tangents of every
 /// pixel, taken about the centre of its initial tile so that float sums keep their digits, and the
-/// sums over all pixels of every node.
+/// sums over all pixels of every node of the coarser levels.
 class TangentTables {
  public:
   struct Level {
-    int columns = 0;
     FullNodes full;
     std::vector<TangentSums> sums;
   };
 
-  TangentTables(const Camera& camera, const QuadtreeGrid& grid);
+  /// For the levels down to `finest`.
+  TangentTables(const Camera& camera, const QuadtreeGrid& grid, int finest);
 
   [[nodiscard]] Eigen::Vector2f at(int x, int y) const { return {u_(x, y), v_(x, y)}; }
   /// The rows from pixel (x, y) on.
   [[nodiscard]] TangentRows from(int x, int y) const { return {&u_(x, y), &v_(x, y), u_.width()}; }
-  [[nodiscard]] const AffineTangents& cells() const { return cells_; }
+  [[nodiscard]] const AffineTangents& finest() const { return finest_; }
   /// Tangents of the centre of an initial tile, row-major.
   [[nodiscard]] const Eigen::Vector2f& origin(std::size_t root) const { return origins_[root]; }
   [[nodiscard]] const Level& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
 
  private:
   void tabulatePixels(const Camera& camera, const QuadtreeGrid& grid);
-  void tabulateCells(const QuadtreeGrid& grid);
-  void approximateCell(const TileRect& rect, std::size_t cell);
-  void mergeLevel(std::size_t parent_level);
+  void tabulateFinest(const QuadtreeGrid& grid);
+  void approximate(const TileRect& rect, std::size_t node);
+  void mergeLevel(std::size_t parent_level, const QuadtreeGrid& grid);
   void prepareRegressions(const QuadtreeGrid& grid);
   void measureReach(const TileRect& rect, std::size_t node, FullNodes& full) const;
 
   Image<float> u_, v_;
-  AffineTangents cells_;
+  AffineTangents finest_;
   std::vector<Eigen::Vector2f> origins_;
   std::vector<Level> levels_;
 };

@@ -112,16 +112,7 @@ int TileFitter::cornerWindow(const TileRect& rect) const {
 
 bool TileFitter::hasDepthAtCorners(const QuadtreeNode& node) const {
   if (options_.corner_check == CornerCheck::kNone) return true;
-  const TileRect rect = pyramid_.grid().rect(node);
-  const int window = cornerWindow(rect);
-  const std::optional<bool> known = pyramid_.hasDepthAtCorners(node, window);
-  if (known) return *known;
-  const int right = rect.x + rect.width - window;
-  const int bottom = rect.y + rect.height - window;
-  return pyramid_.hasDepth({rect.x, rect.y, window, window}) &&
-         pyramid_.hasDepth({right, rect.y, window, window}) &&
-         pyramid_.hasDepth({rect.x, bottom, window, window}) &&
-         pyramid_.hasDepth({right, bottom, window, window});
+  return pyramid_.hasDepthAtCorners(node, cornerWindow(pyramid_.grid().rect(node)));
 }
 
 std::optional<TileFitter::CornerPixels> TileFitter::findCorners(const TileRect& rect) const {

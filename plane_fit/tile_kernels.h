@@ -45,10 +45,29 @@ struct ColumnSums {
   float* q = nullptr;   ///< inverse depth [1/m]
   float* qy = nullptr;  ///< times the row, counted from the strip's first
   float* qq = nullptr;
+
+  /// The columns from `first` on.
+  [[nodiscard]] ColumnSums from(int first) const {
+    return {n + first, q + first, qy + first, qq + first};
+  }
 };
 
-/// Tangents inside each of a row of cells: u + right x + down y about the cell's first pixel. Over
-/// so few pixels a lens is as good as affine.
+/// Tangents of the pixels about one: u + right x + down y. Over a few pixels a lens is as good as
+/// affine.
+struct LocalTangents {
+  float u = 0.0F, u_right = 0.0F, u_down = 0.0F;
+  float v = 0.0F, v_right = 0.0F, v_down = 0.0F;
+
+  /// The same about the pixel (x, y) from here.
+  [[nodiscard]] LocalTangents about(int x, int y) const {
+    const auto right = static_cast<float>(x);
+    const auto down = static_cast<float>(y);
+    return {u + right * u_right + down * u_down, u_right, u_down,
+            v + right * v_right + down * v_down, v_right, v_down};
+  }
+};
+
+/// `LocalTangents` of each of a row of cells, about its first pixel.
 struct CellTangents {
   const float* u = nullptr;
   const float* u_right = nullptr;
@@ -62,7 +81,7 @@ struct CellTangents {
 struct CellRow {
   const int* edges = nullptr;  ///< first column of each cell, at last the end
   int cells = 0;
-  int fours = 0;  ///< so many of them, from the first on, are four columns wide
+  int alike = 0;  ///< so many of them, from the first on, are as wide as the first
   int height = 0;
   CellTangents tangents;
 };
@@ -141,9 +160,12 @@ struct PlaneRows {
   double *alpha, *beta, *gamma, *rms;
 };
 
-/// Sums over the pixels of a cell that have depth: columns x and rows y, counted from its first.
+/// Sums over the pixels of a node that have depth: columns x and rows y, counted from its first.
 struct PositionSums {
   float n = 0.0F, x = 0.0F, y = 0.0F, xx = 0.0F, xy = 0.0F, yy = 0.0F;
+  /// Bit 2 r + c of a quarter that has depth: in the upper (r = 0) or lower, left (c = 0) or right
+  /// half; odd sides have their larger half first.
+  std::uint8_t quarters = 0;
 };
 
 /// How the residuals of a node's regression weigh: the sum over its pixels of factor * rms *
@@ -151,6 +173,13 @@ struct PositionSums {
 struct DistortionRule {
   float factor = 0.0F;
   int depth_power = 0;  ///< 0, 1 or 2
+
+  /// Of `n` pixels whose inverse depth sums up to `q` and leaves `rms`.
+  [[nodiscard]] float weigh(float n, float q, float rms) const {
+    float scale = factor * n;
+    for (int power = 0; power < depth_power; ++power) scale *= n / q;
+    return scale * rms;
+  }
 };
 
 /// What the pixels of a block that have depth add to a node's moments.

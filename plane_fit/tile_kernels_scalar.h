@@ -31,12 +31,8 @@ void sumColumns(const DepthBlock<Pixel>& strip, const ColumnSums& sums, int firs
   }
 }
 
-/// `squares`: mean square of the residuals.
-inline float weigh(const DistortionRule& rule, float n, float q, double squares) {
-  float scale = rule.factor * n;
-  for (int power = 0; power < rule.depth_power; ++power) scale *= n / q;
-  return scale * std::sqrt(static_cast<float>(std::max(0.0, squares)));
-}
+/// Of a mean square that rounding may have made negative.
+inline float root(double squares) { return std::sqrt(static_cast<float>(std::max(0.0, squares))); }
 
 /// The spread of pixels 0 .. side - 1: the sum of squares about their mean.
 inline double spread(int side) { return side * (side * side - 1) / 12.0; }
@@ -54,7 +50,7 @@ inline float weighCell(const DistortionRule& rule, int width, int height, const 
   const double squares = sums.qq - mean * sums.q - right * qx - down * qy;
   const double reach = 0.5 * ((width - 1) * std::abs(right) + (height - 1) * std::abs(down));
   if (mean - reach < double{kMinPlaneInverseDepth}) return -1.0F;
-  return weigh(rule, static_cast<float>(n), sums.q, squares / n);
+  return rule.weigh(static_cast<float>(n), sums.q, root(squares / n));
 }
 
 /// Cells [first, row.cells).
@@ -97,6 +93,9 @@ PositionSums sumPositions(const DepthBlock<Pixel>& block) {
       sums.xx += x * x;
       sums.xy += x * y;
       sums.yy += y * y;
+      const int quarter =
+          2 * (2 * row > block.rows - 1 ? 1 : 0) + (2 * column > block.width - 1 ? 1 : 0);
+      sums.quarters = static_cast<std::uint8_t>(sums.quarters | 1 << quarter);
     }
   }
   return sums;
@@ -133,15 +132,14 @@ inline void regress(const DepthSums* sums, const FullNodeRows& nodes, const Dist
     const double squares = sums[i].qq - mean * q - alpha * qu - beta * qv;
     const double lowest =
         mean - std::abs(alpha) * nodes.reach_u[i] - std::abs(beta) * nodes.reach_v[i];
-    const float rms = std::sqrt(static_cast<float>(std::max(0.0, squares * inverse_n)));
+    const float rms = root(squares * inverse_n);
     const bool in_front = lowest >= double{kMinPlaneInverseDepth};
     NodePlane& plane = fits.planes[i];
     plane.alpha = static_cast<float>(alpha);
     plane.beta = static_cast<float>(beta);
     plane.gamma = static_cast<float>(mean - alpha * nodes.mean_u[i] - beta * nodes.mean_v[i]);
     plane.rms = in_front ? rms : -rms;
-    fits.distortions[i] =
-        in_front ? weigh(rule, nodes.n[i], sums[i].q, squares * inverse_n) : -1.0F;
+    fits.distortions[i] = in_front ? rule.weigh(nodes.n[i], sums[i].q, rms) : -1.0F;
   }
 }
 

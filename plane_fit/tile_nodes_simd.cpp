@@ -38,7 +38,7 @@ hn::Vec<D> centredSquares(D d, hn::Vec<D> q, hn::Vec<D> qq, hn::Vec<D> inverse_n
   return hn::Combine(d, upper, lower);
 }
 
-/// See scalar::weigh; -1 where the plane is not in front.
+/// See DistortionRule::weigh; -1 where the plane is not in front.
 template <class D>
 hn::Vec<D> weigh(D d, const DistortionRule& rule, hn::Vec<D> n, hn::Vec<D> mean, hn::Vec<D> rms,
                  hn::Mask<D> in_front) {
@@ -55,58 +55,99 @@ void storeFills(D d, hn::Vec<D> counts, hn::Vec<D> areas, Fill* fills) {
   const hn::Rebind<std::uint8_t, D> du8;
   const auto one = hn::Set(d, 1.0F);
   const auto some = hn::IfThenElseZero(hn::Gt(counts, hn::Zero(d)), one);
-  const auto all = hn::IfThenElseZero(hn::Eq(counts, areas), one);
+  const auto all = hn::IfThenElseZero(hn::Eq(counts, areas), some);
   const auto values = hn::DemoteTo(du8, hn::ConvertTo(di32, hn::Add(some, all)));
   hn::StoreU(values, du8, reinterpret_cast<std::uint8_t*>(fills));
 }
 
-/// How many of the cells four columns wide were summed: whole vectors.
-int sumFours(const ColumnSums& columns, const CellRow& row, const DistortionRule& rule,
-             const CellSums& sums) {
-  const hn::ScalableTag<float> d;
+/// Sums of cells, one a lane; `qx` counts columns from the cell's first.
+template <class V>
+struct CellVectors {
+  V n, q, qx, qy, qq;
+};
+
+/// Of cells four columns wide, from column x on.
+template <class D>
+HWY_INLINE CellVectors<hn::Vec<D>> sumFours(D d, const ColumnSums& columns, int x) {
+  hn::Vec<D> a, b, c, e;
+  hn::LoadInterleaved4(d, columns.q + x, a, b, c, e);
+  const auto last = hn::Add(c, e);
+  return {sumOfFours(d, columns.n + x), hn::Add(hn::Add(a, b), last),
+          hn::MulAdd(hn::Set(d, 2.0F), last, hn::Add(b, e)), sumOfFours(d, columns.qy + x),
+          sumOfFours(d, columns.qq + x)};
+}
+
+/// Of cells `kWidth` columns wide.
+template <int kWidth, class D>
+HWY_INLINE CellVectors<hn::Vec<D>> sumColumnsOfCells(D d, const ColumnSums& columns, int x) {
+  static_assert(kWidth == 4 || kWidth == 8);
+  const auto first = sumFours(d, columns, x);
+  if constexpr (kWidth == 4) return first;
+  // Left and right halves of cells take turns.
+  const auto last = sumFours(d, columns, x + 4 * static_cast<int>(hn::Lanes(d)));
+  const auto left = [&](auto upper, auto lower) { return hn::ConcatEven(d, upper, lower); };
+  const auto right = [&](auto upper, auto lower) { return hn::ConcatOdd(d, upper, lower); };
+  const auto both = [&](auto upper, auto lower) {
+    return hn::Add(left(upper, lower), right(upper, lower));
+  };
+  return {both(last.n, first.n), both(last.q, first.q),
+          hn::MulAdd(hn::Set(d, 4.0F), right(last.q, first.q), both(last.qx, first.qx)),
+          both(last.qy, first.qy), both(last.qq, first.qq)};
+}
+
+/// Sums cells that are alike, whole vectors of them, from the cell `first` on. Returns where it
+/// ended.
+template <int kWidth, class D>
+int sumAlike(D d, const ColumnSums& columns, const CellRow& row, const DistortionRule& rule,
+             int first, const CellSums& sums) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const CellTangents& t = row.tangents;
   const auto constant = [&](double value) { return hn::Set(d, static_cast<float>(value)); };
-  const auto n = constant(4 * row.height);
-  const auto inverse_n = constant(0.25 / row.height);
-  const auto half_width = constant(1.5);
+  const auto n = constant(kWidth * row.height);
+  const auto inverse_n = constant(1.0 / (kWidth * row.height));
+  const auto half_width = constant(0.5 * (kWidth - 1));
   const auto half_height = constant(0.5 * (row.height - 1));
-  const auto inverse_spread_x = constant(1.0 / (row.height * scalar::spread(4)));
-  const auto inverse_spread_y = constant(row.height > 1 ? 0.25 / scalar::spread(row.height) : 0.0);
-  const auto two = constant(2.0);
-  int cell = 0;
-  for (; cell + lanes <= row.fours; cell += lanes) {
-    const int x = 4 * cell;
+  const auto inverse_spread_x = constant(1.0 / (row.height * scalar::spread(kWidth)));
+  const auto inverse_spread_y =
+      constant(row.height > 1 ? 1.0 / (kWidth * scalar::spread(row.height)) : 0.0);
+  int cell = first;
+  for (; cell + lanes <= row.alike; cell += lanes) {
     const auto tangents = [&](const float* values) { return hn::LoadU(d, values + cell); };
-    hn::Vec<decltype(d)> a, b, c, e;
-    hn::LoadInterleaved4(d, columns.q + x, a, b, c, e);
-    const auto last = hn::Add(c, e);
-    const auto q = hn::Add(hn::Add(a, b), last);
-    const auto qx = hn::MulAdd(two, last, hn::Add(b, e));
-    const auto qy = sumOfFours(d, columns.qy + x);
-    const auto qq = sumOfFours(d, columns.qq + x);
-    const auto qu = hn::MulAdd(
-        tangents(t.u), q, hn::MulAdd(tangents(t.u_right), qx, hn::Mul(tangents(t.u_down), qy)));
-    const auto qv = hn::MulAdd(
-        tangents(t.v), q, hn::MulAdd(tangents(t.v_right), qx, hn::Mul(tangents(t.v_down), qy)));
-    const auto count = sumOfFours(d, columns.n + x);
-    hn::StoreU(count, d, sums.counts + cell);
-    storeFills(d, count, n, sums.fills + cell);
-    hn::StoreInterleaved4(q, qu, qv, qq, d, &sums.depth[cell].q);
+    const auto sum = sumColumnsOfCells<kWidth>(d, columns, row.edges[cell]);
+    const auto qu =
+        hn::MulAdd(tangents(t.u), sum.q,
+                   hn::MulAdd(tangents(t.u_right), sum.qx, hn::Mul(tangents(t.u_down), sum.qy)));
+    const auto qv =
+        hn::MulAdd(tangents(t.v), sum.q,
+                   hn::MulAdd(tangents(t.v_right), sum.qx, hn::Mul(tangents(t.v_down), sum.qy)));
+    hn::StoreU(sum.n, d, sums.counts + cell);
+    storeFills(d, sum.n, n, sums.fills + cell);
+    hn::StoreInterleaved4(sum.q, qu, qv, sum.qq, d, &sums.depth[cell].q);
 
-    const auto centred_x = hn::NegMulAdd(half_width, q, qx);
-    const auto centred_y = hn::NegMulAdd(half_height, q, qy);
+    const auto centred_x = hn::NegMulAdd(half_width, sum.q, sum.qx);
+    const auto centred_y = hn::NegMulAdd(half_height, sum.q, sum.qy);
     const auto right = hn::Mul(centred_x, inverse_spread_x);
     const auto down = hn::Mul(centred_y, inverse_spread_y);
-    auto squares = centredSquares(d, q, qq, inverse_n);
+    auto squares = centredSquares(d, sum.q, sum.qq, inverse_n);
     squares = hn::NegMulAdd(right, centred_x, hn::NegMulAdd(down, centred_y, squares));
     const auto rms = hn::Sqrt(hn::Max(hn::Zero(d), hn::Mul(squares, inverse_n)));
-    const auto mean = hn::Mul(q, inverse_n);
+    const auto mean = hn::Mul(sum.q, inverse_n);
     const auto reach = hn::MulAdd(hn::Abs(right), half_width, hn::Mul(hn::Abs(down), half_height));
     const auto in_front = hn::Ge(hn::Sub(mean, reach), hn::Set(d, kMinPlaneInverseDepth));
     hn::StoreU(weigh(d, rule, n, mean, rms, in_front), d, sums.distortions + cell);
   }
   return cell;
+}
+
+/// How many cells were summed, from the first on: vectors are whole, and cells 4 or 8 pixels wide.
+int sumVectors(const ColumnSums& columns, const CellRow& row, const DistortionRule& rule,
+               const CellSums& sums) {
+  const hn::ScalableTag<float> d;
+  const hn::CappedTag<float, 4> d4;  // as many as a node has quarters
+  const int width = row.alike > 0 ? row.edges[1] - row.edges[0] : 0;
+  if (width == 8) return sumAlike<8>(d, columns, row, rule, 0, sums);
+  if (width != 4) return 0;
+  return sumAlike<4>(d4, columns, row, rule, sumAlike<4>(d, columns, row, rule, 0, sums), sums);
 }
 
 /// How many of the nodes were regressed: whole vectors.
@@ -142,7 +183,7 @@ std::size_t regressVectors(const DepthSums* sums, const FullNodeRows& nodes,
   return i;
 }
 #else
-int sumFours(const ColumnSums&, const CellRow&, const DistortionRule&, const CellSums&) {
+int sumVectors(const ColumnSums&, const CellRow&, const DistortionRule&, const CellSums&) {
   return 0;
 }
 std::size_t regressVectors(const DepthSums*, const FullNodeRows&, const DistortionRule&,
@@ -153,7 +194,7 @@ std::size_t regressVectors(const DepthSums*, const FullNodeRows&, const Distorti
 
 void sumCells(const ColumnSums& columns, const CellRow& row, const DistortionRule& rule,
               const CellSums& sums) {
-  scalar::sumCells(columns, row, rule, sumFours(columns, row, rule, sums), sums);
+  scalar::sumCells(columns, row, rule, sumVectors(columns, row, rule, sums), sums);
 }
 
 void regress(const DepthSums* sums, const FullNodeRows& nodes, const DistortionRule& rule,

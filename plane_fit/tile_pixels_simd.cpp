@@ -80,14 +80,24 @@ void sumColumns(const DepthBlock<Pixel>& strip, const ColumnSums& sums) {
   scalar::sumColumns(strip, sums, x);
 }
 
-template <typename Pixel>
-PositionSums sumPositions(const DepthBlock<Pixel>& block) {
-  const hn::CappedTag<float, 4> d;
-  if (hn::Lanes(d) != 4 || block.width != 4) return scalar::sumPositions(block);
+/// Bit 0 and 1: some column of the left and of the right half is above zero.
+template <class D>
+unsigned halvesAbove(D d, hn::Vec<D> columns) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, hn::Gt(columns, hn::Zero(d)), bytes);
+  const unsigned half = static_cast<unsigned>(hn::Lanes(d)) / 2;
+  const unsigned left = bytes[0] & ((1U << half) - 1U);
+  return (left != 0 ? 1U : 0U) | (bytes[0] >> half != 0 ? 2U : 0U);
+}
+
+/// Of a block as wide as the vector.
+template <class D, typename Pixel>
+PositionSums sumPositionsBy(D d, const DepthBlock<Pixel>& block) {
   const auto zero = hn::Zero(d);
   const auto one = hn::Set(d, 1.0F);
-  auto n = zero, y1 = zero, y2 = zero, row = zero;
+  auto n = zero, upper = zero, y1 = zero, y2 = zero, row = zero;
   for (int y = 0; y < block.rows; ++y) {
+    if (2 * y == block.rows || 2 * y == block.rows + 1) upper = n;
     const auto valid = hn::Gt(loadDepth(d, block.depth + y * block.stride), zero);
     n = hn::Add(n, hn::IfThenElseZero(valid, one));
     y1 = hn::Add(y1, hn::IfThenElseZero(valid, row));
@@ -96,8 +106,24 @@ PositionSums sumPositions(const DepthBlock<Pixel>& block) {
   }
   const auto x = hn::Iota(d, 0.0F);
   const auto sum = [&](auto values) { return hn::GetLane(hn::SumOfLanes(d, values)); };
-  return {sum(n), sum(hn::Mul(n, x)), sum(y1), sum(hn::Mul(n, hn::Mul(x, x))), sum(hn::Mul(y1, x)),
-          sum(y2)};
+  if (block.rows < 2) upper = n;
+  const unsigned quarters = halvesAbove(d, upper) | halvesAbove(d, hn::Sub(n, upper)) << 2U;
+  return {sum(n),
+          sum(hn::Mul(n, x)),
+          sum(y1),
+          sum(hn::Mul(n, hn::Mul(x, x))),
+          sum(hn::Mul(y1, x)),
+          sum(y2),
+          static_cast<std::uint8_t>(quarters)};
+}
+
+template <typename Pixel>
+PositionSums sumPositions(const DepthBlock<Pixel>& block) {
+  const hn::CappedTag<float, 4> d4;
+  const hn::CappedTag<float, 8> d8;
+  if (hn::Lanes(d4) == 4 && block.width == 4) return sumPositionsBy(d4, block);
+  if (hn::Lanes(d8) == 8 && block.width == 8) return sumPositionsBy(d8, block);
+  return scalar::sumPositions(block);
 }
 
 template <class D, typename Pixel>

@@ -21,7 +21,7 @@ constexpr int kNodesAtOnce = 32;
 
 }  // namespace
 
-TreePruner::TreePruner(const MomentPyramid& pyramid, const TileFitter& fitter, double lambda)
+TreePruner::TreePruner(MomentPyramid& pyramid, const TileFitter& fitter, double lambda)
     : pyramid_(pyramid),
       fitter_(fitter),
       split_cost_(static_cast<float>(lambda) * kSplitBits),
@@ -79,7 +79,9 @@ bool TreePruner::weighLevel(std::size_t i, const std::function<bool()>& give_up)
     }
     Node& state = weigh(queue[j]);
     state.open = state.open && i + 1 < queues_.size();
-    if (state.open) pushChildren(queue[j], queues_[i + 1]);
+    if (!state.open) continue;
+    pyramid_.split(queue[j]);
+    pushChildren(queue[j], queues_[i + 1]);
   }
   return true;
 }
@@ -114,9 +116,8 @@ TreePruner::Node& TreePruner::weigh(const QuadtreeNode& node) {
   // A split makes a tile of each child with depth, or costs far more: is that worth a look?
   state.open = distortion > split_cost_;
   if (!state.open) return state;
-  int children = 0;
-  forChildren(node, [&](int, int, std::size_t) { ++children; });
-  state.open = split_cost_ + tile_cost_ * static_cast<float>(children) < state.cost;
+  const auto children = static_cast<float>(pyramid_.countChildren(node));
+  state.open = split_cost_ + tile_cost_ * children < state.cost;
   return state;
 }
 

@@ -17,8 +17,8 @@ namespace planecloud {
 /// tree breadth first, so that it can stop anywhere and still choose well among what it has seen.
 class TreePruner {
  public:
-  /// Keeps references to `pyramid` and `fitter`.
-  TreePruner(const MomentPyramid& pyramid, const TileFitter& fitter, double lambda);
+  /// Keeps references to `pyramid`, whose nodes it splits, and `fitter`.
+  TreePruner(MomentPyramid& pyramid, const TileFitter& fitter, double lambda);
 
   /// The tiles in coding order. `give_up` (asked every few nodes) ends the descent: the result is
   /// then coarser. Valid until the next call.
@@ -56,7 +56,7 @@ class TreePruner {
   void merge(const QuadtreeNode& node);
   void collect();
 
-  const MomentPyramid& pyramid_;
+  MomentPyramid& pyramid_;
   const TileFitter& fitter_;
   float split_cost_, tile_cost_, nothing_cost_;
   std::vector<Level> levels_;

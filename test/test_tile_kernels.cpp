@@ -118,7 +118,7 @@ struct RandomCells {
     const int cells = static_cast<int>(edges.size()) - 1;
     return {edges.data(),
             cells,
-            edges[1] == 4 ? cells : 0,
+            kMaxWidth / edges[1],
             kRows,
             {tables[0].data(), tables[1].data(), tables[2].data(), tables[3].data(),
              tables[4].data(), tables[5].data()}};
@@ -145,7 +145,7 @@ const DistortionRule kRule{0.7F, 1};
 TEST(TileKernels, SumCellsAlike) {
   Strip<float> strip = floatStrip();
   strip.sumColumns(scalarTileKernels(), kMaxWidth, kRows);
-  for (const int cell_width : {2, 3, 4, 5}) {
+  for (const int cell_width : {2, 3, 4, 5, 8}) {
     const RandomCells cells(cell_width);
     const CellRow row = cells.row();
     CellResults a(row.cells), b(row.cells);
