@@ -10,8 +10,7 @@
 namespace planecloud {
 
 /// Remaps image pairs of a camera with lens distortion to the same pinhole without it: grey values
-/// bilinear, depths from the nearest pixel (no depth between two surfaces). One per thread: maps
-/// for colours are made with the first of them.
+/// bilinear, depths from the nearest pixel (no depth between two surfaces).
 class Rectifier {
  public:
   /// Throws std::invalid_argument when `camera` fails its check.

@@ -5,9 +5,8 @@
 namespace planecloud {
 
 RemapKernel scalarRemap() {
-  return
-      [](const RemapSource& source, const RemapSpan* spans, std::size_t count, std::uint8_t* grey,
-         float* depth) { scalar::remap(source, spans, 0, count, grey, depth); };
+  return [](const RemapSource& source, const RemapRow& row, std::size_t count, std::uint8_t* grey,
+            float* depth) { scalar::remap(source, row, 0, count, grey, depth); };
 }
 
 #ifndef PLANECLOUD_SLAM_HAVE_HIGHWAY
