@@ -18,6 +18,8 @@ constexpr int kSampledColumns = 16;
 
 int MomentPyramid::countChildren(const QuadtreeNode& node) const {
   if (node.level + 1 == grid_.levels()) return 0;
+  const QuadtreeNode last{node.level + 1, 2 * node.column + 1, 2 * node.row + 1};
+  if (isFull(node) && grid_.rect(last).area() > 0) return 4;
   int count = 0;
   for (const int row : {2 * node.row, 2 * node.row + 1}) {
     for (const int column : {2 * node.column, 2 * node.column + 1}) {

@@ -122,12 +122,17 @@ TreePruner::Node& TreePruner::weigh(const QuadtreeNode& node) {
 }
 
 void TreePruner::pushChildren(const QuadtreeNode& node, std::vector<QuadtreeNode>& queue) const {
+  // As if all had depth: one look at the queue's room for the four of them.
+  const std::size_t first = queue.size();
+  queue.resize(first + 4);
+  QuadtreeNode* child = &queue[first];
   forChildren(node, [&](int column, int row, std::size_t) {
-    QuadtreeNode& child = queue.emplace_back();
-    child.level = node.level + 1;
-    child.column = column;
-    child.row = row;
+    child->level = node.level + 1;
+    child->column = column;
+    child->row = row;
+    ++child;
   });
+  queue.resize(static_cast<std::size_t>(child - queue.data()));
 }
 
 void TreePruner::merge(const QuadtreeNode& node) {
