@@ -19,9 +19,10 @@ namespace {
 constexpr int kTilesAtOnce = 16;
 /// Merging cells upwards takes this of the time for reading them, at most.
 constexpr double kMergeShare = 0.25;
-/// The way from the nodes weighed to tiles takes this of the time for weighing them, at most, and
-/// so does a look at their pixels.
-constexpr double kAfterChoiceShare = 0.5;
+/// The way from the nodes weighed to tiles takes this of the time for weighing them, at most.
+constexpr double kAfterChoiceShare = 0.9;
+/// A look at the tiles' pixels takes this of the time for choosing and making them, at most.
+constexpr double kLookShare = 0.3;
 /// About so many tiles' pixels are looked at to know the errors of all.
 constexpr double kLookedAtTiles = 128.0;
 
@@ -189,7 +190,7 @@ void QuadtreeFitter::Impl::fitPruned(const BudgetMeter& meter, PlaneCloudStatist
     fits_.push_back(tile_fitter_.estimate(node));
     accept(node, fits_.back());
   }
-  if (!is_late()) {
+  if (!late && !meter.timeIsUpForWork(start, kLookShare)) {
     lookAtPixels(nodes);
     return;
   }
