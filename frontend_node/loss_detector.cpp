@@ -30,6 +30,8 @@ constexpr double kMostGrowth = 1.5;
 constexpr double kDoubtlessOverlap = 0.2;
 constexpr double kDoubtlessGrowth = 2.5;
 constexpr double kInlierSlack = 0.1;
+/// A share of agreeing depths this much below the normal.
+constexpr double kObstruction = 0.25;
 /// Share of a motion that wheels may be wrong by when they slip.
 constexpr double kWheelShare = 0.2;
 
@@ -144,7 +146,7 @@ void LossDetector::learn(const Alignment& alignment) {
   normal_inliers_ += share * (inliers - normal_inliers_);
 }
 
-std::string LossDetector::findDoubt(const Alignment& alignment) const {
+std::string LossDetector::findDoubt(const Alignment& alignment, bool is_lenient) const {
   if (alignment.status != AlignmentStatus::kConverged) return "the alignment did not converge";
   if (alignment.overlap < kDoubtlessOverlap) {
     return compare("the keyframe's share in view is", alignment.overlap, "<", kDoubtlessOverlap);
@@ -153,11 +155,16 @@ std::string LossDetector::findDoubt(const Alignment& alignment) const {
   if (alignment.inliers < inliers) {
     return compare("the share of agreeing depths is", alignment.inliers, "<", inliers);
   }
-  const double grey_limit = greyLimit(std::min(options_.max_residual_growth, kDoubtlessGrowth));
+  const double growth = options_.max_residual_growth;
+  const double grey_limit = greyLimit(is_lenient ? growth : std::min(growth, kDoubtlessGrowth));
   if (alignment.scale.sigma_grey > grey_limit) {
     return compare("the grey residuals are", alignment.scale.sigma_grey, ">", grey_limit);
   }
   return findUncertainty(alignment);
+}
+
+bool LossDetector::isObstructed(const Alignment& alignment) const {
+  return alignment.inliers < normal_inliers_ - kObstruction;
 }
 
 std::string LossDetector::findImplausibleMotion(const TrackedMotion& motion) const {

@@ -36,8 +36,13 @@ class LossDetector {
                                                const TrackedMotion& motion) const;
 
   /// Why the alignment is not enough to go on with after a loss, when nothing else is known of the
-  /// motion; empty when it is.
-  [[nodiscard]] std::string findDoubt(const Alignment& alignment) const;
+  /// motion; empty when it is. `is_lenient` allows for one view being much nearer than the other,
+  /// which shows what the other cannot.
+  [[nodiscard]] std::string findDoubt(const Alignment& alignment, bool is_lenient = false) const;
+
+  /// Much in the view is not what the keyframe shows there, so somebody may stand before it:
+  /// nothing to learn from, nor to make a keyframe of, which would be tracked by who walks away.
+  [[nodiscard]] bool isObstructed(const Alignment& alignment) const;
 
   /// A good frame was aligned so.
   void learn(const Alignment& alignment);

@@ -32,12 +32,19 @@ Relocaliser::Relocaliser(const HistoryOptions& options, const DenseTrackerOption
   options_.check();
 }
 
-/// Who has driven on sees little of what was seen before, but nearly nothing else: it is enough
-/// that one of the images shares much with the other.
-bool Relocaliser::isDoubtless(Alignment alignment, double overlap, const Live& live) {
-  if (alignment.overlap < kLeastOverlap) return false;
-  alignment.overlap = overlap;
-  return live.is_doubtless(alignment);
+/// Who has driven on sees little of what was seen before, but nearly nothing else, and sees it from
+/// nearby: it is enough that one of the images shares much with the other, and looks like it.
+bool Relocaliser::isDoubtless(const BothWays& found, const Live& live) {
+  Alignment ways[] = {found.second_in_first, found.first_in_second};
+  const double overlap = std::max(ways[0].overlap, ways[1].overlap);
+  bool is_alike = false;
+  for (Alignment& way : ways) {
+    if (way.overlap < kLeastOverlap) return false;
+    way.overlap = overlap;
+    if (!live.is_doubtless(way, true)) return false;
+    is_alike = is_alike || live.is_doubtless(way, false);
+  }
+  return is_alike;
 }
 
 std::optional<Relocaliser::BothWays> Relocaliser::alignBothWays(
@@ -45,14 +52,12 @@ std::optional<Relocaliser::BothWays> Relocaliser::alignBothWays(
     const Live& live) {
   BothWays found;
   found.second_in_first = tracker_.align(first.reference, second.pyramid, {T_first_second, {}});
-  if (!isDoubtless(found.second_in_first, 1.0, live)) return std::nullopt;
+  Alignment at_best = found.second_in_first;
+  at_best.overlap = 1.0;
+  if (!live.is_doubtless(at_best, true)) return std::nullopt;
   const Eigen::Isometry3d& T = found.second_in_first.T_reference_current;
   found.first_in_second = tracker_.align(second.reference, first.pyramid, {{T.inverse()}, {}});
-  const double overlap = std::max(found.second_in_first.overlap, found.first_in_second.overlap);
-  if (!isDoubtless(found.second_in_first, overlap, live) ||
-      !isDoubtless(found.first_in_second, overlap, live)) {
-    return std::nullopt;
-  }
+  if (!isDoubtless(found, live)) return std::nullopt;
   const Eigen::Isometry3d loop = T * found.first_in_second.T_reference_current;
   if (loop.translation().norm() > kMaxDisagreement || rotationAngle(loop) > kMaxTurnDisagreement) {
     return std::nullopt;

@@ -34,8 +34,8 @@ class Relocaliser {
   /// Throws std::invalid_argument when options fail their check.
   Relocaliser(const HistoryOptions& options, const DenseTrackerOptions& tracking);
 
-  /// True when an alignment leaves no doubt.
-  using Judge = std::function<bool(const Alignment&)>;
+  /// True when an alignment leaves no doubt (see LossDetector::findDoubt).
+  using Judge = std::function<bool(const Alignment&, bool is_lenient)>;
 
   /// The first of `places` that the live image can be aligned with beyond doubt; else the first
   /// such of `views`, those most alike first; else none.
@@ -61,7 +61,7 @@ class Relocaliser {
   [[nodiscard]] std::optional<BothWays> alignBothWays(
       const Side& first, const Side& second, const std::vector<Eigen::Isometry3d>& T_first_second,
       const Live& live);
-  [[nodiscard]] static bool isDoubtless(Alignment alignment, double overlap, const Live& live);
+  [[nodiscard]] static bool isDoubtless(const BothWays& found, const Live& live);
   [[nodiscard]] std::optional<Relocalisation> alignWith(const ExpectedPlace& place,
                                                         const Live& live);
   [[nodiscard]] std::vector<ExpectedPlace> findAlike(

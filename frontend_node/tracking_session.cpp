@@ -116,7 +116,8 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   }
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
   brightness_ = alignment.brightness;
-  loss_.learn(alignment);
+  const bool is_obstructed = loss_.isObstructed(alignment);
+  if (!is_obstructed) loss_.learn(alignment);
   last_good_stamp_ = frame.stamp;
   usable_lost_ = 0.0;
   last_was_usable_ = true;
@@ -130,7 +131,7 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   result.overlap = alignment.overlap;
   result.inliers = alignment.inliers;
   result.grey_residual = alignment.scale.sigma_grey;
-  if (leaving) {
+  if (leaving && !is_obstructed) {
     openKeyframe(frame, result.T_odom_camera,
                  {{result.reference, T_reference_camera, result.information}});
   } else {
@@ -145,8 +146,8 @@ FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& 
   const double since_last = frame.stamp - last_stamp_;
   if (last_was_usable_ && isLost()) usable_lost_ += std::min(since_last, kLongestFrameGap);
   last_was_usable_ = true;
-  const auto is_doubtless = [this](const Alignment& alignment) {
-    return loss_.findDoubt(alignment).empty();
+  const auto is_doubtless = [this](const Alignment& alignment, bool is_lenient) {
+    return loss_.findDoubt(alignment, is_lenient).empty();
   };
   const std::optional<Relocalisation> found = relocaliser_.find(
       pyramid_, {{reference_.view, reference_.points, possibleMotions(frame.stamp)}}, history_,

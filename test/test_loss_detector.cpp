@@ -63,6 +63,29 @@ TEST(LossDetector, NamesWhatIsWrongWithAnAlignment) {
   EXPECT_NE(fault([](Alignment& a) { a.scale.sigma_grey = 60.0; }), "");
 }
 
+TEST(LossDetector, AfterALossResidualsMustBeNearTheNormal) {
+  LossDetector detector(LossOptions{});
+  detector.learn(goodAlignment());
+  Alignment alignment = goodAlignment();
+  EXPECT_EQ(detector.findDoubt(alignment), "");
+  alignment.scale.sigma_grey = 14.0;  // 2.8 times
+  EXPECT_NE(detector.findDoubt(alignment).find("grey"), std::string::npos);
+  EXPECT_EQ(detector.findDoubt(alignment, true), "");
+  alignment.scale.sigma_grey = 17.0;  // 3.4 times
+  EXPECT_NE(detector.findDoubt(alignment, true).find("grey"), std::string::npos);
+}
+
+TEST(LossDetector, TakesManyDepthsThatDisagreeForAnObstruction) {
+  LossDetector detector(LossOptions{});
+  Alignment alignment = goodAlignment();
+  alignment.inliers = 0.6;
+  EXPECT_FALSE(detector.isObstructed(alignment));  // nothing is known to be normal
+  detector.learn(goodAlignment());
+  EXPECT_TRUE(detector.isObstructed(alignment));
+  alignment.inliers = 0.75;
+  EXPECT_FALSE(detector.isObstructed(alignment));
+}
+
 TEST(LossDetector, ImplausibleMotionsAndEntropiesAreNotBelieved) {
   const LossDetector detector(LossOptions{});
   EXPECT_NE(detector.findAlignmentFault(goodAlignment(), {1.0, pose(0.5, 0, 0), 0.033}), "");

@@ -52,8 +52,6 @@ TrialOutcome run(const Trial& trial) {
 
 TEST(TrackingTrials, LossIsNoticedAndEndsSoon) {
   for (const Trial& trial : makeTrials(hallway(), kSeed)) {
-    // Half a view that moves rigidly is still followed at times: bench_tracking --trials counts it.
-    if (trial.name == "person walks through") continue;
     const TrialOutcome outcome = run(trial);
     EXPECT_EQ(outcome.wrong, 0U) << trial.name << ": " << outcome.worst << " m";
     EXPECT_EQ(outcome.blind_good, 0U) << trial.name;
