@@ -30,8 +30,10 @@ constexpr double kMostGrowth = 1.5;
 constexpr double kDoubtlessOverlap = 0.2;
 constexpr double kDoubtlessGrowth = 2.5;
 constexpr double kInlierSlack = 0.1;
-/// A share of agreeing depths this much below the normal.
+/// A share of agreeing depths this much below the normal. With less of the keyframe in view than
+/// this it has to be left anyhow.
 constexpr double kObstruction = 0.25;
+constexpr double kObstructedOverlap = 0.35;
 /// Share of a motion that wheels may be wrong by when they slip.
 constexpr double kWheelShare = 0.2;
 
@@ -164,7 +166,8 @@ std::string LossDetector::findDoubt(const Alignment& alignment, bool is_lenient)
 }
 
 bool LossDetector::isObstructed(const Alignment& alignment) const {
-  return alignment.inliers < normal_inliers_ - kObstruction;
+  return alignment.overlap > kObstructedOverlap &&
+         alignment.inliers < normal_inliers_ - kObstruction;
 }
 
 std::string LossDetector::findImplausibleMotion(const TrackedMotion& motion) const {

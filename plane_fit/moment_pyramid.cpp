@@ -13,6 +13,7 @@ namespace {
 
 /// The tangents of a strong lens are within 1e-5 of an affine function over 8 pixels.
 constexpr int kMaxAffineSide = 8;
+
 const Camera& required(const std::shared_ptr<const Camera>& camera) {
   if (!camera) throw std::invalid_argument("the plane fitter needs a camera, got none");
   return *camera;

@@ -82,6 +82,9 @@ TEST(LossDetector, TakesManyDepthsThatDisagreeForAnObstruction) {
   EXPECT_FALSE(detector.isObstructed(alignment));  // nothing is known to be normal
   detector.learn(goodAlignment());
   EXPECT_TRUE(detector.isObstructed(alignment));
+  alignment.overlap = 0.3;  // the keyframe has nearly left the view
+  EXPECT_FALSE(detector.isObstructed(alignment));
+  alignment.overlap = 0.8;
   alignment.inliers = 0.75;
   EXPECT_FALSE(detector.isObstructed(alignment));
 }
