@@ -159,6 +159,7 @@ def main():
     except (OSError, subprocess.CalledProcessError) as error:
         reason = getattr(error, "stderr", "") or error
         environment[INSIDE] = f"no network namespaces here: {reason}"
+        print(f"skipped, {environment[INSIDE]}", file=sys.stderr)
         command = [sys.executable, *sys.argv]
     try:
         return subprocess.run(command, env=environment, check=False).returncode
