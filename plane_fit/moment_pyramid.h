@@ -111,6 +111,9 @@ class MomentPyramid {
   [[nodiscard]] const Level& level(const QuadtreeNode& node) const {
     return levels_[static_cast<std::size_t>(node.level)];
   }
+  [[nodiscard]] const Level& blocks() const {
+    return levels_[static_cast<std::size_t>(block_level_)];
+  }
   [[nodiscard]] std::size_t index(const QuadtreeNode& node) const {
     return static_cast<std::size_t>(node.row * grid_.columns(node.level) + node.column);
   }
@@ -147,9 +150,9 @@ class MomentPyramid {
   }
   /// Some pixel of a quarter of a whole block has depth (see PositionSums).
   [[nodiscard]] bool quarterHasDepth(std::size_t block, int quarter) const {
-    const Level& blocks = levels_[static_cast<std::size_t>(block_level_)];
-    if (blocks.fills[block] != Fill::kPart) return blocks.fills[block] == Fill::kAll;
-    return (blocks.quarters[block] >> quarter & 1) != 0;
+    const Fill fill = blocks().fills[block];
+    return fill == Fill::kPart ? (blocks().quarters[block] >> quarter & 1) != 0
+                               : fill == Fill::kAll;
   }
   /// Of a block or smaller.
   [[nodiscard]] NodePlane regressSmall(const QuadtreeNode& node) const;

@@ -77,7 +77,6 @@ TangentSums MomentPyramid::sumTangents(const QuadtreeNode& node) const {
 
 bool MomentPyramid::hasDepthAtCorners(const QuadtreeNode& node, int window) const {
   const TileRect rect = grid_.rect(node);
-  const Level& blocks = levels_[static_cast<std::size_t>(block_level_)];
   const bool fits = window <= std::min(first_block_.width, first_block_.height);
   const bool is_quarter = 2 * window == first_block_.width && 2 * window == first_block_.height;
   // Of the node in blocks.
@@ -87,10 +86,10 @@ bool MomentPyramid::hasDepthAtCorners(const QuadtreeNode& node, int window) cons
       if (side > 0) {
         const std::size_t i = index({block_level_, (node.column + right) * side - right,
                                      (node.row + lower) * side - lower});
-        if (blocks.fills[i] == Fill::kAll) continue;
+        if (blocks().fills[i] == Fill::kAll) continue;
         if (isWholeBlock(i)) {
           if (is_quarter && quarterHasDepth(i, 2 * lower + right)) continue;
-          if (is_quarter || (fits && blocks.fills[i] == Fill::kNothing)) return false;
+          if (is_quarter || (fits && blocks().fills[i] == Fill::kNothing)) return false;
         }
       }
       if (!hasDepth({rect.x + right * (rect.width - window),
@@ -109,13 +108,7 @@ TileMoments MomentPyramid::moments(const QuadtreeNode& node) const {
 
 TileMoments MomentPyramid::moments(int level, std::size_t i, const TangentSums& tangents) const {
   const Level& nodes = levels_[static_cast<std::size_t>(level)];
-  TileMoments moments;
-  moments.n = nodes.counts[i];
-  moments.u = tangents.u;
-  moments.v = tangents.v;
-  moments.uu = tangents.uu;
-  moments.uv = tangents.uv;
-  moments.vv = tangents.vv;
+  TileMoments moments = tangentMoments(nodes.counts[i], tangents);
   moments.q = nodes.depth[i].q;
   moments.qu = nodes.depth[i].qu;
   moments.qv = nodes.depth[i].qv;

@@ -41,8 +41,6 @@ class QuadtreeGrid {
   /// First pixel column of cell column `i`, i in [0, cellColumns()]; likewise rows.
   [[nodiscard]] int cellX(int i) const { return x_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] int cellY(int i) const { return y_[static_cast<std::size_t>(i)]; }
-  /// `cellX` of every cell column and the end.
-  [[nodiscard]] const int* cellEdges() const { return x_.data(); }
   /// Cells along one side of a node of `level`.
   [[nodiscard]] int cellsPerSide(int level) const { return 1 << (levels_ - 1 - level); }
 

@@ -5,20 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planecloud_slam/plane_fit/plane_regression.h"
-
 namespace planecloud {
 namespace {
 
 void prepareRegression(const TangentSums& sums, std::size_t node, FullNodes& full) {
-  TileMoments moments;
-  moments.n = full.n[node];
-  moments.u = sums.u;
-  moments.v = sums.v;
-  moments.uu = sums.uu;
-  moments.uv = sums.uv;
-  moments.vv = sums.vv;
-  const TangentScatterInverse inverse = invertTangentScatter(moments);
+  const TangentScatterInverse inverse = invertTangentScatter(tangentMoments(full.n[node], sums));
   full.inverse_n[node] = 1.0F / full.n[node];
   full.mean_u[node] = sums.u / full.n[node];
   full.mean_v[node] = sums.v / full.n[node];
@@ -33,6 +24,17 @@ QuadtreeNode nodeAt(const QuadtreeGrid& grid, int level, std::size_t i) {
 }
 
 }  // namespace
+
+TileMoments tangentMoments(double n, const TangentSums& sums) {
+  TileMoments moments;
+  moments.n = n;
+  moments.u = sums.u;
+  moments.v = sums.v;
+  moments.uu = sums.uu;
+  moments.uv = sums.uv;
+  moments.vv = sums.vv;
+  return moments;
+}
 
 void FullNodes::resize(std::size_t nodes) {
   for (std::vector<float>* values : {&n, &inverse_n, &mean_u, &mean_v, &reach_u, &reach_v,

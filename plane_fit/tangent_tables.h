@@ -7,10 +7,14 @@
 #include <vector>
 
 #include "planecloud_slam/plane_fit/camera.h"
+#include "planecloud_slam/plane_fit/plane_regression.h"
 #include "planecloud_slam/plane_fit/quadtree_grid.h"
 #include "planecloud_slam/plane_fit/tile_kernels.h"
 
 namespace planecloud {
+
+/// Moments of `n` pixels without their depth.
+[[nodiscard]] TileMoments tangentMoments(double n, const TangentSums& sums);
 
 /// What regression needs of the nodes of one level when they have no holes (see `FullNodeRows`).
 struct FullNodes {
