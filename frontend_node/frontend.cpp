@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "planecloud_slam/frontend_node/rectifier.h"
 #include "planecloud_slam/frontend_node/tracking_session.h"
 
 namespace planecloud {
@@ -16,9 +15,9 @@ const FrontendOptions& checked(const FrontendOptions& options) {
   return options;
 }
 
-CameraIntrinsics trackedCamera(const CameraIntrinsics& camera) {
+CameraIntrinsics trackedCamera(const CameraIntrinsics& camera, const FrontendOptions& options) {
   camera.check();
-  return camera.rectified();
+  return options.undistort ? camera : camera.rectified();
 }
 
 void checkSize(int width, int height, const CameraIntrinsics& camera, const char* image) {
@@ -36,12 +35,11 @@ class Frontend::Impl {
  public:
   Impl(const FrontendOptions& options, const CameraIntrinsics& camera, KeyframeId first_id)
       : options_(checked(options)),
-        camera_(trackedCamera(camera)),
+        camera_(trackedCamera(camera, options)),
         session_(options_, camera_, first_id) {
     if (first_id.robot.empty()) {
       throw std::invalid_argument("a frontend needs the name of its robot");
     }
-    if (options.undistort && camera.hasDistortion()) rectifier_.emplace(camera);
   }
 
   FrameResult track(const RgbdFrame& raw,
@@ -51,9 +49,7 @@ class Frontend::Impl {
     if (!raw.color.empty()) checkSize(raw.color.width(), raw.color.height(), camera_, "texture's");
     if (raw.stamp < last_stamp_) startAfresh();
     last_stamp_ = raw.stamp;
-    if (!rectifier_) return session_.track(raw, T_previous_current);
-    rectifier_->rectify(raw, rectified_);
-    return session_.track(rectified_, T_previous_current);
+    return session_.track(raw, T_previous_current);
   }
 
   std::unique_ptr<Impl> continueWith(const CameraIntrinsics& camera) {
@@ -88,9 +84,7 @@ class Frontend::Impl {
 
  private:
   FrontendOptions options_;
-  const CameraIntrinsics camera_;  ///< without distortion
-  std::optional<Rectifier> rectifier_;
-  RgbdFrame rectified_;  ///< keeps its memory
+  const CameraIntrinsics camera_;
   TrackingSession session_;
   std::vector<CompletedKeyframe> completed_;  ///< in an earlier camera
   double last_stamp_ = 0.0;

@@ -9,7 +9,7 @@ namespace planecloud {
 OpenKeyframe::OpenKeyframe(const LocalMapOptions& options, const CameraIntrinsics& camera)
     : camera_(camera), local_map_(options, camera) {}
 
-void OpenKeyframe::open(const RgbdFrame& frame, TrackedReference reference,
+void OpenKeyframe::open(RgbdFrame frame, TrackedReference reference,
                         std::vector<RelativePoseEdge> edges) {
   reference_ = std::move(reference);
   keyframe_ = Keyframe{};
@@ -17,14 +17,14 @@ void OpenKeyframe::open(const RgbdFrame& frame, TrackedReference reference,
   keyframe_.stamp = frame.stamp;
   keyframe_.T_odom_camera = reference_.view->T_odom_camera;
   keyframe_.edges = std::move(edges);
-  grey_ = frame.grey;
-  color_ = frame.color;
+  grey_ = std::move(frame.grey);
+  color_ = std::move(frame.color);
   local_map_.open(frame.depth.view());
   is_open_ = true;
 }
 
-void OpenKeyframe::fuse(const RgbdFrame& frame, const Eigen::Isometry3d& T_keyframe_camera) {
-  if (is_open_) local_map_.fuse(frame.depth.view(), T_keyframe_camera);
+void OpenKeyframe::fuse(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_camera) {
+  if (is_open_) local_map_.fuse(depth, T_keyframe_camera);
 }
 
 CompletedKeyframe OpenKeyframe::complete(std::vector<KeyframeViewPtr> earlier) {

@@ -28,10 +28,9 @@ class OpenKeyframe {
   [[nodiscard]] bool isOpen() const { return is_open_; }
 
   /// Opens the keyframe of `reference` with `frame`, linked by `edges`.
-  void open(const RgbdFrame& frame, TrackedReference reference,
-            std::vector<RelativePoseEdge> edges);
-  /// Improves the depth by that of a frame at `T_keyframe_camera`; nothing when none is open.
-  void fuse(const RgbdFrame& frame, const Eigen::Isometry3d& T_keyframe_camera);
+  void open(RgbdFrame frame, TrackedReference reference, std::vector<RelativePoseEdge> edges);
+  /// Improves the depth by that of a frame [m] at `T_keyframe_camera`; nothing when none is open.
+  void fuse(ImageView<float> depth, const Eigen::Isometry3d& T_keyframe_camera);
   /// Closes it; `earlier` are the keyframes it may be aligned with. Requires isOpen().
   [[nodiscard]] CompletedKeyframe complete(std::vector<KeyframeViewPtr> earlier);
 

@@ -19,16 +19,24 @@ struct DepthRange {
   float most = 0.0F;
 };
 
-/// Two rows of an image pair.
-struct RowPair {
-  const std::uint8_t* grey[2] = {};
-  const float* depth[2] = {};  ///< [m], NaN: none
+/// Two rows of grey values.
+struct GreyRows {
+  const std::uint8_t* upper = nullptr;
+  const std::uint8_t* lower = nullptr;
+};
+
+/// Two rows of depths [m, NaN: none], and the grey values of the row that is made of them.
+struct DepthRows {
+  const float* upper = nullptr;
+  const float* lower = nullptr;
+  const float* made_grey = nullptr;
 };
 
 /// Two implementations that give the same bits. `count`: pixels of the row that is made.
 struct PyramidKernels {
   const char* name;
-  void (*halve_images)(const RowPair& rows, const DepthRange& range, int count, GreyDepth* made);
+  void (*halve_grey)(const GreyRows& rows, int count, float* made);
+  void (*halve_depth)(const DepthRows& rows, const DepthRange& range, int count, GreyDepth* made);
   void (*halve_level)(const GreyDepth* upper, const GreyDepth* lower, int count, GreyDepth* made);
 };
 

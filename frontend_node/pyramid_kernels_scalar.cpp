@@ -7,8 +7,9 @@ namespace planecloud {
 const PyramidKernels& scalarPyramidKernels() {
   static const PyramidKernels kernels{
       "scalar",
-      [](const RowPair& rows, const DepthRange& range, int count, GreyDepth* made) {
-        scalar::halveImages(rows, range, 0, count, made);
+      [](const GreyRows& rows, int count, float* made) { scalar::halveGrey(rows, 0, count, made); },
+      [](const DepthRows& rows, const DepthRange& range, int count, GreyDepth* made) {
+        scalar::halveDepth(rows, range, 0, count, made);
       },
       [](const GreyDepth* upper, const GreyDepth* lower, int count, GreyDepth* made) {
         scalar::halveLevel(upper, lower, 0, count, made);

@@ -44,17 +44,23 @@ inline float mergeInverseDepths(float a, float b, float c, float d) {
 }
 
 /// Pixels [first, count).
-inline void halveImages(const RowPair& rows, const DepthRange& range, int first, int count,
-                        GreyDepth* made) {
+inline void halveGrey(const GreyRows& rows, int first, int count, float* made) {
+  for (int i = first; i < count; ++i) {
+    const std::uint8_t* upper = rows.upper + 2 * i;
+    const std::uint8_t* lower = rows.lower + 2 * i;
+    made[i] = 0.25F * static_cast<float>(upper[0] + upper[1] + lower[0] + lower[1]);
+  }
+}
+
+/// Pixels [first, count).
+inline void halveDepth(const DepthRows& rows, const DepthRange& range, int first, int count,
+                       GreyDepth* made) {
   const auto usable = [&](float z) { return z >= range.least && z <= range.most ? z : 0.0F; };
   for (int i = first; i < count; ++i) {
-    const int left = 2 * i;
-    const int right = left + 1;
-    const int sum =
-        rows.grey[0][left] + rows.grey[0][right] + rows.grey[1][left] + rows.grey[1][right];
-    made[i].grey = 0.25F * static_cast<float>(sum);
-    made[i].inverse_depth = mergeDepths(usable(rows.depth[0][left]), usable(rows.depth[0][right]),
-                                        usable(rows.depth[1][left]), usable(rows.depth[1][right]));
+    const float* upper = rows.upper + 2 * i;
+    const float* lower = rows.lower + 2 * i;
+    made[i] = {rows.made_grey[i],
+               mergeDepths(usable(upper[0]), usable(upper[1]), usable(lower[0]), usable(lower[1]))};
   }
 }
 

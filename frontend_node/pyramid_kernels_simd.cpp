@@ -80,9 +80,21 @@ HWY_INLINE auto addPairs(const std::uint8_t* row) {
   return hn::Add(hn::PromoteTo(words, even), hn::PromoteTo(words, odd));
 }
 
-void halveImages(const RowPair& rows, const DepthRange& range, int count, GreyDepth* made) {
+void halveGrey(const GreyRows& rows, int count, float* made) {
   const PyramidD d;
   const hn::RebindToSigned<PyramidD> di;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto sum = hn::Add(addPairs(rows.upper + 2 * i), addPairs(rows.lower + 2 * i));
+    const PyramidV grey = hn::ConvertTo(d, hn::PromoteTo(di, sum));
+    hn::StoreU(hn::Mul(grey, hn::Set(d, 0.25F)), d, made + i);
+  }
+  scalar::halveGrey(rows, i, count, made);
+}
+
+void halveDepth(const DepthRows& rows, const DepthRange& range, int count, GreyDepth* made) {
+  const PyramidD d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const auto usable = [&](PyramidV z) {
     return hn::IfThenElseZero(
@@ -90,15 +102,13 @@ void halveImages(const RowPair& rows, const DepthRange& range, int count, GreyDe
   };
   int i = 0;
   for (; i + lanes <= count; i += lanes) {
-    const auto sum = hn::Add(addPairs(rows.grey[0] + 2 * i), addPairs(rows.grey[1] + 2 * i));
-    const PyramidV grey = hn::Mul(hn::ConvertTo(d, hn::PromoteTo(di, sum)), hn::Set(d, 0.25F));
     Four z;
-    hn::LoadInterleaved2(d, rows.depth[0] + 2 * i, z.a, z.b);
-    hn::LoadInterleaved2(d, rows.depth[1] + 2 * i, z.c, z.e);
+    hn::LoadInterleaved2(d, rows.upper + 2 * i, z.a, z.b);
+    hn::LoadInterleaved2(d, rows.lower + 2 * i, z.c, z.e);
     z = {usable(z.a), usable(z.b), usable(z.c), usable(z.e)};
-    hn::StoreInterleaved2(grey, mergeDepths(z), d, &made[i].grey);
+    hn::StoreInterleaved2(hn::LoadU(d, rows.made_grey + i), mergeDepths(z), d, &made[i].grey);
   }
-  scalar::halveImages(rows, range, i, count, made);
+  scalar::halveDepth(rows, range, i, count, made);
 }
 
 void halveLevel(const GreyDepth* upper, const GreyDepth* lower, int count, GreyDepth* made) {
@@ -115,7 +125,9 @@ void halveLevel(const GreyDepth* upper, const GreyDepth* lower, int count, GreyD
   scalar::halveLevel(upper, lower, i, count, made);
 }
 
-PyramidKernels pyramidKernels() { return {hwy::TargetName(HWY_TARGET), &halveImages, &halveLevel}; }
+PyramidKernels pyramidKernels() {
+  return {hwy::TargetName(HWY_TARGET), &halveGrey, &halveDepth, &halveLevel};
+}
 
 }  // namespace planecloud::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -10,7 +10,8 @@
 namespace planecloud {
 
 /// Remaps image pairs of a camera with lens distortion to the same pinhole without it: grey values
-/// bilinear, depths from the nearest pixel (no depth between two surfaces).
+/// and colours bilinear, depths from the nearest pixel (no depth between two surfaces). Images must
+/// have the camera's size; the memory of results is kept.
 class Rectifier {
  public:
   /// Throws std::invalid_argument when `camera` fails its check.
@@ -22,10 +23,15 @@ class Rectifier {
   /// The camera the rectified images belong to.
   [[nodiscard]] const CameraIntrinsics& camera() const { return rectified_; }
 
-  /// Where the original image does not reach, depth is NaN. The frame must have the camera's size.
+  /// All images of a frame.
   [[nodiscard]] RgbdFrame rectify(const RgbdFrame& frame) const;
-  /// The same into `rectified`, whose memory is kept.
-  void rectify(const RgbdFrame& frame, RgbdFrame& rectified) const;
+
+  /// Depth [m] alone; NaN where the original image does not reach.
+  void rectifyDepth(const Image<float>& depth, Image<float>& rectified) const;
+  /// The mean grey value of each 2x2 rectified pixels, at a quarter of the cost of these.
+  void rectifyHalfGrey(const Image<std::uint8_t>& grey, Image<float>& rectified) const;
+  /// Grey and colour of `frame`; `rectified` keeps its depth.
+  void rectifyColors(const RgbdFrame& frame, RgbdFrame& rectified) const;
 
  private:
   struct Maps;

@@ -59,21 +59,38 @@ RgbdPyramid::RgbdPyramid(const CameraIntrinsics& camera, const DenseTrackerOptio
 }
 
 void RgbdPyramid::assign(ImageView<std::uint8_t> grey, ImageView<float> depth) {
+  if (!takesHalfGrey()) return assignFullSize(grey, depth);
+  half_grey_.resize(grey.width() / 2, grey.height() / 2);
+  for (int y = 0; y < half_grey_.height(); ++y) {
+    vectorPyramidKernels().halve_grey({grey.row(2 * y), grey.row(2 * y + 1)}, half_grey_.width(),
+                                      half_grey_.row(y));
+  }
+  assignHalf(half_grey_.view(), depth);
+}
+
+void RgbdPyramid::assignHalf(ImageView<float> half_grey, ImageView<float> depth) {
   RgbdLevel& first = finer_.empty() ? levels_.front() : finer_.front();
   for (int y = 0; y < first.camera.height; ++y) {
-    GreyDepth* made = first.pixels.row(y);
-    if (first_halvings_ > 0) {
-      const RowPair rows{{grey.row(2 * y), grey.row(2 * y + 1)},
-                         {depth.row(2 * y), depth.row(2 * y + 1)}};
-      vectorPyramidKernels().halve_images(rows, depth_range_, first.camera.width, made);
-      continue;
-    }
-    for (int x = 0; x < first.camera.width; ++x) {
+    vectorPyramidKernels().halve_depth({depth.row(2 * y), depth.row(2 * y + 1), half_grey.row(y)},
+                                       depth_range_, first.camera.width, first.pixels.row(y));
+  }
+  halveOn();
+}
+
+void RgbdPyramid::assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth) {
+  Image<GreyDepth>& pixels = levels_.front().pixels;
+  for (int y = 0; y < pixels.height(); ++y) {
+    for (int x = 0; x < pixels.width(); ++x) {
       const float z = depth(x, y);
       const bool is_usable = z >= depth_range_.least && z <= depth_range_.most;
-      made[x] = {static_cast<float>(grey(x, y)), is_usable ? 1.0F / z : 0.0F};
+      pixels(x, y) = {static_cast<float>(grey(x, y)), is_usable ? 1.0F / z : 0.0F};
     }
   }
+  halveOn();
+}
+
+/// Makes all levels of the first one.
+void RgbdPyramid::halveOn() {
   for (std::size_t i = 1; i < finer_.size(); ++i) halve(finer_[i - 1], finer_[i]);
   if (!finer_.empty()) halve(finer_.back(), levels_.front());
   for (std::size_t i = 1; i < levels_.size(); ++i) halve(levels_[i - 1], levels_[i]);

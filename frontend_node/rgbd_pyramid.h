@@ -43,15 +43,24 @@ class RgbdPyramid {
   /// Rebuilds every level from `grey` [0..255] and `depth` [m, NaN: none], both of the camera's
   /// size; depths outside the options' range count as none. Keeps the memory.
   void assign(ImageView<std::uint8_t> grey, ImageView<float> depth);
+  /// The same when `half_grey`, the mean of each 2x2 pixels, is there already. Requires
+  /// takesHalfGrey().
+  void assignHalf(ImageView<float> half_grey, ImageView<float> depth);
+  /// The images are larger than the finest level.
+  [[nodiscard]] bool takesHalfGrey() const { return first_halvings_ > 0; }
 
   /// Finest first.
   [[nodiscard]] const std::vector<RgbdLevel>& levels() const { return levels_; }
 
  private:
+  void assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth);
+  void halveOn();
+
   DepthRange depth_range_;
   int first_halvings_;
   std::vector<RgbdLevel> finer_;  ///< levels above the finest tracked one, only steps to it
   std::vector<RgbdLevel> levels_;
+  Image<float> half_grey_;  ///< keeps its memory
 };
 
 }  // namespace planecloud

@@ -41,12 +41,12 @@ Matrix6d wheelInformation(const Eigen::Isometry3d& T) {
 TrackingSession::TrackingSession(const FrontendOptions& options, const CameraIntrinsics& camera,
                                  KeyframeId first_id)
     : options_(options),
-      pyramid_(camera, options.tracking),
+      images_(camera, options.tracking),
       tracker_(options.tracking),
       selector_(options.keyframe),
       loss_(options.lost),
       relocaliser_(options.history, options.tracking),
-      open_(options.local_map, camera),
+      open_(options.local_map, camera.rectified()),
       next_id_(std::move(first_id)),
       T_odom_start_(levelledCamera()) {}
 
@@ -82,13 +82,14 @@ FrameResult TrackingSession::process(const RgbdFrame& frame) {
     last_was_usable_ = false;
     return lose(image_fault);
   }
-  pyramid_.assign(frame.grey.view(), frame.depth.view());
+  images_.assign(frame);
   if (!isTracking()) return openSegment(frame);
   if (frame.stamp - last_good_stamp_ > options_.lost.max_gap) {
     return recover(frame, "the keyframe is not recognised after a gap");
   }
-  const Alignment alignment = tracker_.align(
-      *reference_.points, pyramid_, {{T_reference_predicted_, T_reference_last_}, brightness_});
+  const Alignment alignment =
+      tracker_.align(*reference_.points, images_.pyramid(),
+                     {{T_reference_predicted_, T_reference_last_}, brightness_});
   const bool leaving = selector_.isLeavingKeyframe(alignment.T_reference_current,
                                                    alignment.normal_matrix, alignment.overlap);
   const std::string fault = loss_.findAlignmentFault(alignment, motionOf(alignment, frame.stamp));
@@ -135,7 +136,7 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
     openKeyframe(frame, result.T_odom_camera,
                  {{result.reference, T_reference_camera, result.information}});
   } else {
-    open_.fuse(frame, T_reference_camera);
+    open_.fuse(images_.depth(frame), T_reference_camera);
   }
   return result;
 }
@@ -150,8 +151,8 @@ FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& 
     return loss_.findDoubt(alignment, is_lenient).empty();
   };
   const std::optional<Relocalisation> found = relocaliser_.find(
-      pyramid_, {{reference_.view, reference_.points, possibleMotions(frame.stamp)}}, history_,
-      is_doubtless);
+      images_.pyramid(), {{reference_.view, reference_.points, possibleMotions(frame.stamp)}},
+      history_, is_doubtless);
   if (found) return resume(frame, *found);
   if (usable_lost_ < options_.lost.new_segment_after) return lose(fault);
   if (wheels_since_good_) return bridgeByWheels(frame);
@@ -232,12 +233,12 @@ FrameResult TrackingSession::openSegment(const RgbdFrame& frame) {
 void TrackingSession::openKeyframe(const RgbdFrame& frame, const Eigen::Isometry3d& T_odom_camera,
                                    std::vector<RelativePoseEdge> edges) {
   completeKeyframe();
-  reference_.view = std::make_shared<const KeyframeView>(
-      KeyframeView{next_id_, segment_, T_odom_camera, pyramid_, describeView(pyramid_)});
-  reference_.points = std::make_shared<const TrackingReference>(pyramid_, options_.tracking,
-                                                                earlierImages(T_odom_camera));
+  reference_.view = std::make_shared<const KeyframeView>(KeyframeView{
+      next_id_, segment_, T_odom_camera, images_.pyramid(), describeView(images_.pyramid())});
+  reference_.points = std::make_shared<const TrackingReference>(
+      images_.pyramid(), options_.tracking, earlierImages(T_odom_camera));
   ++next_id_.number;
-  open_.open(frame, reference_, std::move(edges));
+  open_.open(images_.full(frame), reference_, std::move(edges));
   brightness_ = Brightness{};
   T_reference_last_ = T_reference_predicted_ = Eigen::Isometry3d::Identity();
   usable_lost_ = 0.0;

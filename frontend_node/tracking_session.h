@@ -11,17 +11,19 @@
 #include "planecloud_slam/frontend_node/dense_tracker.h"
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/frontend_node/keyframe_selector.h"
+#include "planecloud_slam/frontend_node/live_images.h"
 #include "planecloud_slam/frontend_node/loss_detector.h"
 #include "planecloud_slam/frontend_node/open_keyframe.h"
 #include "planecloud_slam/frontend_node/relocaliser.h"
 
 namespace planecloud {
 
-/// Tracking in one camera without distortion: which keyframe frames are aligned to, when the next
+/// Tracking in one camera: which keyframe frames are aligned to, when the next
 /// one opens, and what happens when the track is lost.
 class TrackingSession {
  public:
-  /// Throws std::invalid_argument when options or camera fail their check.
+  /// `camera` as it takes the images. Throws std::invalid_argument when options or camera fail
+  /// their check.
   TrackingSession(const FrontendOptions& options, const CameraIntrinsics& camera,
                   KeyframeId first_id);
 
@@ -62,7 +64,7 @@ class TrackingSession {
   [[nodiscard]] bool isLost() const { return last_stamp_ > last_good_stamp_; }
 
   const FrontendOptions options_;
-  RgbdPyramid pyramid_;
+  LiveImages images_;
   DenseTracker tracker_;
   KeyframeSelector selector_;
   LossDetector loss_;

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "planecloud_slam/frontend_node/half_remap_kernel.h"
 #include "planecloud_slam/frontend_node/rectifier.h"
-#include "planecloud_slam/frontend_node/remap_kernel.h"
 #include "synthetic_scene.h"
 
 namespace planecloud {
@@ -57,35 +57,49 @@ TEST(Rectifier, MakesNoDepthBetweenTwoSurfaces) {
   }
 }
 
+TEST(Rectifier, HalfGreyIsTheMeanOfTheRectifiedPixels) {
+  RgbdFrame frame{0.0, Image<std::uint8_t>(320, 240), Image<float>(320, 240, 1.0F), {}};
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      const float wave = std::sin(0.8F * static_cast<float>(x)) * std::cos(static_cast<float>(y));
+      frame.grey(x, y) = static_cast<std::uint8_t>(std::lround(128.0F + 120.0F * wave));
+    }
+  }
+  const Rectifier rectifier(distortedCamera());
+  const Image<std::uint8_t> full = rectifier.rectify(frame).grey;
+  Image<float> half;
+  rectifier.rectifyHalfGrey(frame.grey, half);
+  ASSERT_EQ(half.width(), 160);
+  ASSERT_EQ(half.height(), 120);
+  for (int y = 10; y < 110; ++y) {  // what lies beyond the original image is made up
+    for (int x = 10; x < 150; ++x) {
+      const int sum = full(2 * x, 2 * y) + full(2 * x + 1, 2 * y) + full(2 * x, 2 * y + 1) +
+                      full(2 * x + 1, 2 * y + 1);
+      // Waves of 6 to 8 pixels change by 100 levels a pixel; positions are rounded to 1/32 px.
+      EXPECT_NEAR(half(x, y), 0.25F * static_cast<float>(sum), 4.0F) << x << " " << y;
+    }
+  }
+}
+
 TEST(Rectifier, VectorAndScalarLoopsGiveTheSameBits) {
   constexpr int kWidth = 53;
   constexpr int kHeight = 7;
-  constexpr std::size_t kPixels = kWidth * kHeight;
   std::mt19937 random(5);
   std::uniform_int_distribution<int> uniform(0, 1 << 20);
-  std::vector<std::uint8_t> grey(kPixels);
-  std::vector<float> depth(kPixels);
+  std::vector<std::uint8_t> grey(kWidth * kHeight);
   for (std::uint8_t& value : grey) value = static_cast<std::uint8_t>(uniform(random));
-  for (float& value : depth) value = 1e-3F * static_cast<float>(uniform(random));
   std::vector<std::int32_t> at;
   std::vector<std::uint8_t> right, down;
   for (std::size_t i = 0; i < 203; ++i) {
-    const int index = uniform(random) % (kHeight - 1) * kWidth + uniform(random) % (kWidth - 1);
-    at.push_back(i % 9 == 0 ? ~index : index);
-    right.push_back(static_cast<std::uint8_t>(uniform(random) % (kRemapSteps + 1)));
-    down.push_back(static_cast<std::uint8_t>(uniform(random) % (kRemapSteps + 1)));
+    at.push_back(uniform(random) % (kHeight - 2) * kWidth + uniform(random) % (kWidth - 3));
+    right.push_back(static_cast<std::uint8_t>(uniform(random) % (kHalfRemapSteps + 1)));
+    down.push_back(static_cast<std::uint8_t>(uniform(random) % (kHalfRemapSteps + 1)));
   }
-  const RemapSource source{grey.data(), depth.data(), kWidth};
-  const RemapRow row{at.data(), right.data(), down.data()};
-  std::vector<std::uint8_t> grey_a(at.size()), grey_b(at.size());
-  std::vector<float> depth_a(at.size()), depth_b(at.size());
-  scalarRemap()(source, row, at.size(), grey_a.data(), depth_a.data());
-  vectorRemap()(source, row, at.size(), grey_b.data(), depth_b.data());
-  EXPECT_EQ(grey_a, grey_b);
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    EXPECT_EQ(std::isnan(depth_a[i]), i % 9 == 0);
-    EXPECT_TRUE(depth_a[i] == depth_b[i] || std::isnan(depth_a[i] + depth_b[i]));
-  }
+  const HalfRemapRow row{at.data(), right.data(), down.data()};
+  std::vector<float> scalar(at.size()), vector(at.size());
+  scalarHalfRemap()({grey.data(), kWidth}, row, at.size(), scalar.data());
+  vectorHalfRemap()({grey.data(), kWidth}, row, at.size(), vector.data());
+  EXPECT_EQ(scalar, vector);
 }
 
 TEST(Rectifier, ItsCameraHasNoDistortion) {

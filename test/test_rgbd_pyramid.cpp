@@ -103,11 +103,16 @@ TEST(PyramidKernels, GiveTheSameBits) {
       level[row].push_back({255.0F * uniform(random), z > 0.0F ? 1.0F / z : 0.0F});
     }
   }
-  const RowPair rows{{grey[0].data(), grey[1].data()}, {depth[0].data(), depth[1].data()}};
+  const GreyRows grey_rows{grey[0].data(), grey[1].data()};
   for (const int count : {1, 7, 8, 16, kMost}) {
     std::vector<GreyDepth> a(static_cast<std::size_t>(count)), b(a.size());
-    scalarPyramidKernels().halve_images(rows, {0.2F, 8.0F}, count, a.data());
-    vectorPyramidKernels().halve_images(rows, {0.2F, 8.0F}, count, b.data());
+    std::vector<float> mean(a.size()), mean_b(a.size());
+    scalarPyramidKernels().halve_grey(grey_rows, count, mean.data());
+    vectorPyramidKernels().halve_grey(grey_rows, count, mean_b.data());
+    EXPECT_EQ(mean, mean_b);
+    const DepthRows rows{depth[0].data(), depth[1].data(), mean.data()};
+    scalarPyramidKernels().halve_depth(rows, {0.2F, 8.0F}, count, a.data());
+    vectorPyramidKernels().halve_depth(rows, {0.2F, 8.0F}, count, b.data());
     expectSameBits(a, b);
     scalarPyramidKernels().halve_level(level[0].data(), level[1].data(), count, a.data());
     vectorPyramidKernels().halve_level(level[0].data(), level[1].data(), count, b.data());

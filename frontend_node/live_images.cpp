@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planecloud_slam/frontend_node/live_images.h"
+
+namespace planecloud {
+
+LiveImages::LiveImages(const CameraIntrinsics& camera, const DenseTrackerOptions& options)
+    : pyramid_(camera.rectified(), options) {
+  if (camera.hasDistortion()) rectifier_.emplace(camera);
+}
+
+void LiveImages::assign(const RgbdFrame& frame) {
+  if (!rectifier_) return pyramid_.assign(frame.grey.view(), frame.depth.view());
+  rectifier_->rectifyDepth(frame.depth, rectified_.depth);
+  if (pyramid_.takesHalfGrey()) {
+    rectifier_->rectifyHalfGrey(frame.grey, half_grey_);
+    return pyramid_.assignHalf(half_grey_.view(), rectified_.depth.view());
+  }
+  rectifier_->rectifyColors(frame, rectified_);
+  pyramid_.assign(rectified_.grey.view(), rectified_.depth.view());
+}
+
+ImageView<float> LiveImages::depth(const RgbdFrame& frame) const {
+  return rectifier_ ? rectified_.depth.view() : frame.depth.view();
+}
+
+RgbdFrame LiveImages::full(const RgbdFrame& frame) const {
+  if (!rectifier_) return frame;
+  RgbdFrame rectified{frame.stamp, {}, rectified_.depth, {}};
+  rectifier_->rectifyColors(frame, rectified);
+  return rectified;
+}
+
+}  // namespace planecloud

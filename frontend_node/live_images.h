@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the planecloud_slam authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "planecloud_slam/frontend_node/rectifier.h"
+#include "planecloud_slam/frontend_node/rgbd_pyramid.h"
+
+namespace planecloud {
+
+/// The images of the current frame as tracking wants them, without lens distortion: what every
+/// frame needs is made for every frame, what a keyframe needs only on request.
+class LiveImages {
+ public:
+  /// `camera` as it takes the images. Throws std::invalid_argument when camera or options fail
+  /// their check.
+  LiveImages(const CameraIntrinsics& camera, const DenseTrackerOptions& options);
+
+  /// Makes `pyramid` and `depth` of `frame`, of the camera's size.
+  void assign(const RgbdFrame& frame);
+
+  [[nodiscard]] const RgbdPyramid& pyramid() const { return pyramid_; }
+  /// Depth [m, NaN: none] of `frame`, the one assigned last.
+  [[nodiscard]] ImageView<float> depth(const RgbdFrame& frame) const;
+  /// All images of `frame`, the one assigned last.
+  [[nodiscard]] RgbdFrame full(const RgbdFrame& frame) const;
+
+ private:
+  std::optional<Rectifier> rectifier_;  ///< of a camera with distortion
+  RgbdPyramid pyramid_;
+  RgbdFrame rectified_;     ///< keeps its memory
+  Image<float> half_grey_;  ///< likewise
+};
+
+}  // namespace planecloud
