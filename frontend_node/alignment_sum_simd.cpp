@@ -20,143 +20,205 @@ using V = hn::Vec<D>;
 
 constexpr std::size_t kWidest = ReferencePoints::kLanes;
 constexpr int kTwist = 6;
-/// Sums: 21 twist-twist, 6 twist-error, 6 twist-offset, 6 twist-gain, 5 of brightness, the error.
-constexpr int kSums = 45;
-/// Partial sums of this many points are kept in float.
-constexpr std::size_t kFlush = 2048;
+/// Columns of the Jacobian beside the residual: twist, offset, gain, residual.
+constexpr int kColumns = 9;
+constexpr int kResidual = 8;
+/// Points whose columns are in cache together. Partial sums of so many chunks are kept in float.
+constexpr std::size_t kChunk = 128;
+constexpr std::size_t kFlush = 16 * kChunk;
 
-HWY_INLINE void accumulate(V a, V b, float*& sums) {
+/// Columns `q a, (a x ray)` over the twist of a residual that changes by `q a . dp`.
+HWY_INLINE void storeTwist(V a1, V a2, V a3, V u, V v, V q, float* columns, std::size_t stride) {
   const D d;
-  hn::Store(hn::MulAdd(a, b, hn::Load(d, sums)), d, sums);
-  sums += kWidest;
+  hn::Store(hn::Mul(q, a1), d, columns);
+  hn::Store(hn::Mul(q, a2), d, columns + stride);
+  hn::Store(hn::Mul(q, a3), d, columns + 2 * stride);
+  hn::Store(hn::MulSub(v, a3, a2), d, columns + 3 * stride);
+  hn::Store(hn::NegMulAdd(u, a3, a1), d, columns + 4 * stride);
+  hn::Store(hn::MulSub(u, a2, hn::Mul(v, a1)), d, columns + 5 * stride);
 }
 
-HWY_INLINE void accumulate2(V a, V b, V c, V e, float*& sums) {
-  const D d;
-  hn::Store(hn::MulAdd(a, b, hn::MulAdd(c, e, hn::Load(d, sums))), d, sums);
-  sums += kWidest;
-}
+/// The columns of some points for both whitened residuals, times the root of the points' weights
+/// (0 when not seen): see scalar::whiten. Inverse depth has none of brightness, these stay zero.
+template <std::size_t kPoints>
+struct WeightedColumns {
+  HWY_ALIGN float grey[kColumns * kPoints] = {};
+  HWY_ALIGN float q[kColumns * kPoints] = {};
+  HWY_ALIGN float root[kPoints];  ///< of the weights
 
-/// Jacobian rows `q a, (a x ray)` over the twist of a residual that changes by `q a . dp`.
-HWY_INLINE void storeRow(V a1, V a2, V a3, V u, V v, V q, float* row) {
-  const D d;
-  hn::Store(hn::Mul(q, a1), d, row);
-  hn::Store(hn::Mul(q, a2), d, row + kWidest);
-  hn::Store(hn::Mul(q, a3), d, row + 2 * kWidest);
-  hn::Store(hn::MulSub(v, a3, a2), d, row + 3 * kWidest);
-  hn::Store(hn::NegMulAdd(u, a3, a1), d, row + 4 * kWidest);
-  hn::Store(hn::MulSub(u, a2, hn::Mul(v, a1)), d, row + 5 * kWidest);
-}
+  /// Of the points from `i` on: the roots of their weights and the residuals times these.
+  HWY_INLINE void weigh(const ResidualView& residuals, const Whitening& whitening, std::size_t i,
+                        std::size_t k) {
+    const D d;
+    const V r_q = hn::LoadU(d, residuals.q + i);
+    const V e2 = hn::Mul(r_q, hn::Set(d, whitening.inverse_q));
+    const V e1 =
+        hn::Mul(hn::NegMulAdd(hn::Set(d, whitening.slope), r_q, hn::LoadU(d, residuals.grey + i)),
+                hn::Set(d, whitening.inverse_grey));
+    const V nu = hn::Set(d, whitening.nu);
+    const V square = hn::MulAdd(e1, e1, hn::Mul(e2, e2));
+    const V weight =
+        hn::Div(hn::Mul(hn::LoadU(d, residuals.seen + i), hn::Add(nu, hn::Set(d, 2.0F))),
+                hn::Add(nu, square));
+    const V scale = hn::Sqrt(weight);
+    hn::Store(scale, d, root + k);
+    hn::Store(hn::Mul(scale, e1), d, grey + kResidual * kPoints + k);
+    hn::Store(hn::Mul(scale, e2), d, q + kResidual * kPoints + k);
+  }
 
-/// Whitened residuals of some points and their Jacobian: see scalar::whiten.
-struct WhitenedPoints {
-  HWY_ALIGN float row1[kTwist * kWidest];  ///< of e1 (grey) over the twist
-  HWY_ALIGN float row2[kTwist * kWidest];  ///< of e2 (inverse depth) over the twist
-  V offset, gain;                          ///< of e1 over brightness
-  V e1, e2;
-  V weight;  ///< 0 for points not seen
-
-  HWY_INLINE WhitenedPoints(const ReferencePoints& points, const ResidualView& residuals,
-                            const Whitening& whitening, std::size_t i) {
+  /// Those of the points from `i` on, in the places from `k` on.
+  HWY_INLINE void store(const ReferencePoints& points, const Whitening& whitening, std::size_t i,
+                        std::size_t k) {
     const D d;
     const V u = hn::LoadU(d, points.u.data() + i), v = hn::LoadU(d, points.v.data() + i);
-    const V q = hn::LoadU(d, points.q.data() + i);
-    const V inverse_q = hn::Set(d, whitening.inverse_q);
+    const V q_point = hn::LoadU(d, points.q.data() + i);
+    const V scale = hn::Load(d, root + k);
+    const V inverse_q = hn::Mul(scale, hn::Set(d, whitening.inverse_q));
+    const V inverse_grey = hn::Mul(scale, hn::Set(d, whitening.inverse_grey));
     const V to_q = hn::Set(d, whitening.slope * whitening.inverse_grey / whitening.inverse_q);
-    const V r_q = hn::LoadU(d, residuals.q + i);
-    offset = hn::Set(d, whitening.inverse_grey);
-    e2 = hn::Mul(r_q, inverse_q);
-    e1 = hn::Mul(hn::NegMulAdd(hn::Set(d, whitening.slope), r_q, hn::LoadU(d, residuals.grey + i)),
-                 offset);
-    const V nu = hn::Set(d, whitening.nu);
-    weight = hn::Div(hn::Mul(hn::LoadU(d, residuals.seen + i), hn::Add(nu, hn::Set(d, 2.0F))),
-                     hn::Add(nu, square()));
-    gain = hn::Mul(hn::Sub(hn::LoadU(d, points.grey.data() + i), hn::Set(d, kMiddleGrey)),
-                   hn::Set(d, kInverseGreySpread * whitening.inverse_grey));
     const V b1 = hn::Mul(hn::LoadU(d, points.q_u.data() + i), inverse_q);
     const V b2 = hn::Mul(hn::LoadU(d, points.q_v.data() + i), inverse_q);
-    const V b3 = hn::NegMulAdd(b2, v, hn::NegMulAdd(b1, u, hn::Mul(q, inverse_q)));
-    const V i1 = hn::Mul(hn::LoadU(d, points.grey_u.data() + i), offset);
-    const V i2 = hn::Mul(hn::LoadU(d, points.grey_v.data() + i), offset);
+    const V b3 = hn::NegMulAdd(b2, v, hn::NegMulAdd(b1, u, hn::Mul(q_point, inverse_q)));
+    const V i1 = hn::Mul(hn::LoadU(d, points.grey_u.data() + i), inverse_grey);
+    const V i2 = hn::Mul(hn::LoadU(d, points.grey_v.data() + i), inverse_grey);
     const V i3 = hn::Neg(hn::MulAdd(i1, u, hn::Mul(i2, v)));
-    storeRow(hn::NegMulAdd(to_q, b1, i1), hn::NegMulAdd(to_q, b2, i2), hn::NegMulAdd(to_q, b3, i3),
-             u, v, q, row1);
-    storeRow(b1, b2, b3, u, v, q, row2);
+    storeTwist(hn::NegMulAdd(to_q, b1, i1), hn::NegMulAdd(to_q, b2, i2),
+               hn::NegMulAdd(to_q, b3, i3), u, v, q_point, grey + k, kPoints);
+    storeTwist(b1, b2, b3, u, v, q_point, q + k, kPoints);
+    const V contrast =
+        hn::Mul(hn::Sub(hn::LoadU(d, points.grey.data() + i), hn::Set(d, kMiddleGrey)),
+                hn::Set(d, kInverseGreySpread));
+    hn::Store(inverse_grey, d, grey + kTwist * kPoints + k);
+    hn::Store(hn::Mul(contrast, inverse_grey), d, grey + (kTwist + 1) * kPoints + k);
   }
-  HWY_INLINE V square() const { return hn::MulAdd(e1, e1, hn::Mul(e2, e2)); }
 };
 
-HWY_INLINE void addPoints(const ReferencePoints& points, const ResidualView& residuals,
-                          const Whitening& whitening, std::size_t i, float* sums) {
-  const D d;
-  const WhitenedPoints w(points, residuals, whitening, i);
-  const V weighted_e1 = hn::Mul(w.weight, w.e1), weighted_e2 = hn::Mul(w.weight, w.e2);
-  const V weighted_offset = hn::Mul(w.weight, w.offset), weighted_gain = hn::Mul(w.weight, w.gain);
-  for (int r = 0; r < kTwist; ++r) {
-    const V at1 = hn::Load(d, w.row1 + r * kWidest), at2 = hn::Load(d, w.row2 + r * kWidest);
-    const V weighted1 = hn::Mul(w.weight, at1), weighted2 = hn::Mul(w.weight, at2);
-    for (int c = r; c < kTwist; ++c) {
-      accumulate2(weighted1, hn::Load(d, w.row1 + c * kWidest), weighted2,
-                  hn::Load(d, w.row2 + c * kWidest), sums);
+using ChunkColumns = WeightedColumns<kChunk>;
+
+/// Three columns of a vector of points.
+struct Three {
+  HWY_INLINE Three(const float* columns, std::size_t k)
+      : a(hn::Load(D(), columns + k)),
+        b(hn::Load(D(), columns + kChunk + k)),
+        c(hn::Load(D(), columns + 2 * kChunk + k)) {}
+  V a, b, c;
+};
+
+/// Products of three columns with three, summed in registers; of a diagonal block the upper
+/// triangle.
+template <bool kDiagonal>
+struct ProductBlock {
+  V aa, ab, ac, ba, bb, bc, ca, cb, cc;
+
+  HWY_INLINE ProductBlock() { aa = ab = ac = ba = bb = bc = ca = cb = cc = hn::Zero(D()); }
+  HWY_INLINE void add(const Three& row, const Three& column) {
+    aa = hn::MulAdd(row.a, column.a, aa);
+    ab = hn::MulAdd(row.a, column.b, ab);
+    bb = hn::MulAdd(row.b, column.b, bb);
+    if (!kDiagonal) {
+      ba = hn::MulAdd(row.b, column.a, ba);
+      ca = hn::MulAdd(row.c, column.a, ca);
+      cb = hn::MulAdd(row.c, column.b, cb);
     }
-    accumulate2(weighted_e1, at1, weighted_e2, at2, sums);
-    accumulate(weighted_offset, at1, sums);
-    accumulate(weighted_gain, at1, sums);
+    addLast(row, column.c);
   }
-  accumulate(weighted_offset, w.offset, sums);
-  accumulate(weighted_offset, w.gain, sums);
-  accumulate(weighted_gain, w.gain, sums);
-  accumulate(weighted_e1, w.offset, sums);
-  accumulate(weighted_e1, w.gain, sums);
-  accumulate(w.weight, w.square(), sums);
+  /// With the last of three columns, the others being zero.
+  HWY_INLINE void addLast(const Three& row, V column) {
+    ac = hn::MulAdd(row.a, column, ac);
+    bc = hn::MulAdd(row.b, column, bc);
+    cc = hn::MulAdd(row.c, column, cc);
+  }
+  HWY_INLINE void addTo(float* sums) const {
+    for (const V sum : {aa, ab, ac, ba, bb, bc, ca, cb, cc}) {
+      hn::Store(hn::Add(sum, hn::Load(D(), sums)), D(), sums);
+      sums += kWidest;
+    }
+  }
+};
+
+/// Sums of products of the columns' threes, by blocks: 00, 01, 02, 11, 12, 22.
+constexpr std::size_t kBlockSize = 9 * kWidest;
+constexpr std::size_t kBlocks = 6;
+constexpr std::size_t kLastThree = 2;
+
+template <std::size_t kRow, std::size_t kColumn>
+void addProducts(const ChunkColumns& columns, std::size_t size, float* sums) {
+  constexpr std::size_t kThree = 3 * kChunk;
+  // Additions to one sum wait for each other: two sums of each product, where registers suffice.
+  ProductBlock<kRow == kColumn> first, second;
+  ProductBlock<kRow == kColumn>& other = kRow == 0 && kColumn == 1 ? first : second;
+  for (std::size_t k = 0; k < size; k += hn::Lanes(D())) {
+    first.add({columns.grey + kRow * kThree, k}, {columns.grey + kColumn * kThree, k});
+    const Three q(columns.q + kRow * kThree, k);
+    if (kColumn == kLastThree) {
+      other.addLast(q, hn::Load(D(), columns.q + kResidual * kChunk + k));
+    } else {
+      other.add(q, {columns.q + kColumn * kThree, k});
+    }
+  }
+  first.addTo(sums);
+  second.addTo(sums);
+}
+
+void addChunk(const ChunkColumns& columns, std::size_t size, float* sums) {
+  addProducts<0, 0>(columns, size, sums);
+  addProducts<0, 1>(columns, size, sums + kBlockSize);
+  addProducts<0, 2>(columns, size, sums + 2 * kBlockSize);
+  addProducts<1, 1>(columns, size, sums + 3 * kBlockSize);
+  addProducts<1, 2>(columns, size, sums + 4 * kBlockSize);
+  addProducts<2, 2>(columns, size, sums + 5 * kBlockSize);
+}
+
+/// Adds the float sums to `equations` and clears them.
+void flush(float* sums, NormalEquations& equations) {
+  constexpr int kFirstBlock[] = {0, 3, 5};
+  for (int row = 0; row < kColumns; ++row) {
+    for (int column = row; column < kColumns; ++column) {
+      const int block = kFirstBlock[row / 3] + column / 3 - row / 3;
+      const float* lanes = sums + (9 * block + 3 * (row % 3) + column % 3) * int{kWidest};
+      double sum = 0.0;
+      for (std::size_t lane = 0; lane < kWidest; ++lane) sum += static_cast<double>(lanes[lane]);
+      if (column < kResidual) {
+        equations.matrix(row, column) += sum;
+      } else {
+        (row < kResidual ? equations.vector(row) : equations.error) += sum;
+      }
+    }
+  }
+  std::fill(sums, sums + kBlocks * kBlockSize, 0.0F);
+}
+
+void sum(const ReferencePoints& points, const ResidualView& residuals, const Whitening& whitening,
+         NormalEquations& equations) {
+  HWY_ALIGN float sums[kBlocks * kBlockSize] = {};
+  ChunkColumns columns;
+  for (std::size_t begin = 0; begin < residuals.count; begin += kChunk) {
+    const std::size_t size = std::min(kChunk, residuals.count - begin);
+    for (std::size_t k = 0; k < size; k += hn::Lanes(D())) {
+      columns.weigh(residuals, whitening, begin + k, k);
+    }
+    for (std::size_t k = 0; k < size; k += hn::Lanes(D())) {
+      columns.store(points, whitening, begin + k, k);
+    }
+    addChunk(columns, size, sums);
+    if ((begin + kChunk) % kFlush == 0) flush(sums, equations);
+  }
+  flush(sums, equations);
 }
 
 /// Gradients of the points from `i` on, `kUnknowns` rows of lanes.
 HWY_INLINE void storeGradients(const ReferencePoints& points, const ResidualView& residuals,
                                const Whitening& whitening, std::size_t i, float* gradients) {
   const D d;
-  const WhitenedPoints w(points, residuals, whitening, i);
-  const V e1 = hn::Mul(w.weight, w.e1), e2 = hn::Mul(w.weight, w.e2);
-  for (int r = 0; r < kTwist; ++r) {
-    const V at1 = hn::Load(d, w.row1 + r * kWidest), at2 = hn::Load(d, w.row2 + r * kWidest);
-    hn::Store(hn::MulAdd(e1, at1, hn::Mul(e2, at2)), d, gradients + r * kWidest);
-  }
-  hn::Store(hn::Mul(e1, w.offset), d, gradients + kTwist * kWidest);
-  hn::Store(hn::Mul(e1, w.gain), d, gradients + (kTwist + 1) * kWidest);
-}
-
-/// Adds the float sums to `equations` and clears them.
-void flush(float* sums, NormalEquations& equations) {
-  const auto next = [&sums] {
-    double sum = 0.0;
-    for (std::size_t lane = 0; lane < kWidest; ++lane) sum += static_cast<double>(sums[lane]);
-    std::fill(sums, sums + kWidest, 0.0F);
-    sums += kWidest;
-    return sum;
-  };
-  for (int row = 0; row < kTwist; ++row) {
-    for (int column = row; column < kTwist; ++column) equations.matrix(row, column) += next();
-    equations.vector(row) += next();
-    equations.matrix(row, 6) += next();
-    equations.matrix(row, 7) += next();
-  }
-  equations.matrix(6, 6) += next();
-  equations.matrix(6, 7) += next();
-  equations.matrix(7, 7) += next();
-  equations.vector(6) += next();
-  equations.vector(7) += next();
-  equations.error += next();
-}
-
-void sum(const ReferencePoints& points, const ResidualView& residuals, const Whitening& whitening,
-         NormalEquations& equations) {
-  HWY_ALIGN float sums[kSums * kWidest] = {};
-  for (std::size_t begin = 0; begin < residuals.count; begin += kFlush) {
-    const std::size_t end = std::min(begin + kFlush, residuals.count);
-    for (std::size_t i = begin; i < end; i += hn::Lanes(D())) {
-      addPoints(points, residuals, whitening, i, sums);
-    }
-    flush(sums, equations);
+  WeightedColumns<kWidest> columns;
+  columns.weigh(residuals, whitening, i, 0);
+  columns.store(points, whitening, i, 0);
+  const V e1 = hn::Load(d, columns.grey + kResidual * kWidest);
+  const V e2 = hn::Load(d, columns.q + kResidual * kWidest);
+  for (std::size_t k = 0; k < kUnknowns * kWidest; k += kWidest) {
+    hn::Store(
+        hn::MulAdd(e1, hn::Load(d, columns.grey + k), hn::Mul(e2, hn::Load(d, columns.q + k))), d,
+        gradients + k);
   }
 }
 

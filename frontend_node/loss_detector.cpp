@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "planecloud_slam/plane_fit/se3.h"
@@ -58,23 +60,25 @@ std::string compare(const std::string& what, double value, const std::string& re
 LossDetector::LossDetector(const LossOptions& options) : options_(options) { options_.check(); }
 
 std::string LossDetector::findImageFault(const RgbdFrame& frame) const {
-  double n = 0.0, sum = 0.0, sum_squares = 0.0, valid = 0.0;
+  std::int64_t count = 0, grey_sum = 0, grey_squares = 0, valid_count = 0;
   for (int y = 0; y < frame.grey.height(); y += kSampleStep) {
-    for (int x = 0; x < frame.grey.width(); x += kSampleStep) {
-      const double grey = frame.grey(x, y);
-      n += 1.0;
-      sum += grey;
-      sum_squares += grey * grey;
-      const float z = frame.depth(x, y);
-      if (std::isfinite(z) && z > 0.0F) valid += 1.0;
+    const std::uint8_t* greys = frame.grey.row(y);
+    const float* depths = frame.depth.row(y);
+    for (int x = 0; x < frame.grey.width(); x += kSampleStep, ++count) {
+      const int grey = greys[x];
+      grey_sum += grey;
+      grey_squares += grey * grey;
+      valid_count += depths[x] > 0.0F && depths[x] < std::numeric_limits<float>::infinity() ? 1 : 0;
     }
   }
-  if (valid == 0.0) return "the depth image has no valid pixel";
+  const auto n = static_cast<double>(count), valid = static_cast<double>(valid_count);
+  if (valid_count == 0) return "the depth image has no valid pixel";
   if (valid < options_.min_valid_depth * n) {
     return compare("the share of pixels with depth is", valid / n, "<", options_.min_valid_depth);
   }
-  const double mean = sum / n;
-  const double deviation = std::sqrt(std::max(0.0, sum_squares / n - mean * mean));
+  const double mean = static_cast<double>(grey_sum) / n;
+  const double deviation =
+      std::sqrt(std::max(0.0, static_cast<double>(grey_squares) / n - mean * mean));
   if (deviation < options_.min_contrast) {
     return compare("the colour image is blank: its standard deviation is", deviation, "<",
                    options_.min_contrast);
