@@ -96,11 +96,14 @@ std::vector<DenseTracker::State> DenseTracker::rankStarts(const ReferencePoints&
                                                           const RgbdLevel& current,
                                                           const AlignmentStart& start) {
   std::vector<std::pair<double, State>> ranked;
+  const auto allowed = [this](const Eigen::Isometry3d& T) {
+    return planar_ ? planar_->nearest(T) : T;
+  };
   for (const Eigen::Isometry3d& T_reference_current : start.T_reference_current) {
     State state;
     state.brightness = start.brightness;
-    state.T_current_reference = T_reference_current.inverse();
-    state.T_current_reference_prior = start.T_reference_current.front().inverse();
+    state.T_current_reference = allowed(T_reference_current.inverse());
+    state.T_current_reference_prior = allowed(start.T_reference_current.front().inverse());
     computeResiduals(points, current, state.T_current_reference, state.brightness, residuals_);
     for (int pass = 0; pass < kFirstScalePasses; ++pass) {
       state.scale = reestimateScale(residuals_.view(), state.scale, scale_model_);
@@ -161,6 +164,21 @@ void DenseTracker::restrictBrightness(NormalEquations& equations) const {
   }
 }
 
+/// The step; none when it is not determined.
+std::optional<StepVector> DenseTracker::solve(const NormalEquations& equations) const {
+  const auto solveIn = [&](const auto& basis) -> std::optional<StepVector> {
+    const auto ldlt = (basis.transpose() * equations.matrix * basis).eval().ldlt();
+    const StepVector step = basis * ldlt.solve(basis.transpose() * equations.vector);
+    if (!ldlt.isPositive() || !step.allFinite()) return std::nullopt;
+    return step;
+  };
+  if (!planar_) return solveIn(StepMatrix::Identity().eval());
+  Eigen::Matrix<double, kUnknowns, 5> basis = Eigen::Matrix<double, kUnknowns, 5>::Zero();
+  basis.topLeftCorner<6, 3>() = planar_->basis();
+  basis.bottomRightCorner<2, 2>().setIdentity();
+  return solveIn(basis);
+}
+
 AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const RgbdLevel& current,
                                          State& state) {
   State best = state;
@@ -192,12 +210,11 @@ AlignmentStatus DenseTracker::alignLevel(const ReferencePoints& points, const Rg
     }
     NormalEquations equations = state.equations;
     addPrior(state, equations);
-    const Eigen::LDLT<StepMatrix> ldlt(equations.matrix);
-    const StepVector step = ldlt.solve(equations.vector);
-    if (!ldlt.isPositive() || !step.allFinite()) return AlignmentStatus::kDegenerate;
-    state.T_current_reference = state.T_current_reference * expSe3(-step.head<6>());
-    state.brightness = updateBrightness(state.brightness, step);
-    if (step.dot(equations.vector) < options_.min_relative_change * state.equations.error) {
+    const std::optional<StepVector> step = solve(equations);
+    if (!step) return AlignmentStatus::kDegenerate;
+    state.T_current_reference = state.T_current_reference * expSe3(-step->head<6>());
+    state.brightness = updateBrightness(state.brightness, *step);
+    if (step->dot(equations.vector) < options_.min_relative_change * state.equations.error) {
       return AlignmentStatus::kConverged;
     }
   }
@@ -261,6 +278,7 @@ Alignment DenseTracker::align(const TrackingReference& reference, const RgbdPyra
   if (alignment.status == AlignmentStatus::kConverged ||
       alignment.status == AlignmentStatus::kNotConverged) {
     setInformation(points.front(), state, alignment);
+    if (planar_) alignment.information += planar_->information();
   }
   return alignment;
 }

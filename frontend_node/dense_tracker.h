@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "planecloud_slam/frontend_node/alignment_kernel.h"
 #include "planecloud_slam/frontend_node/dense_tracker_options.h"
+#include "planecloud_slam/frontend_node/planar_motion.h"
 #include "planecloud_slam/frontend_node/rgbd_pyramid.h"
 #include "planecloud_slam/frontend_node/tracking_reference.h"
 #include "planecloud_slam/plane_fit/se3.h"
@@ -53,6 +55,9 @@ class DenseTracker {
   /// Throws std::invalid_argument when `options` fail their check.
   explicit DenseTracker(const DenseTrackerOptions& options);
 
+  /// From now on looks for planar motions only; none: for all of SE(3).
+  void setPlanarMotion(const std::optional<PlanarMotion>& planar) { planar_ = planar; }
+
   /// Aligns `current` to `reference`; both must come from pyramids of the same shape.
   /// Throws std::invalid_argument when they do not or when there is no start.
   [[nodiscard]] Alignment align(const TrackingReference& reference, const RgbdPyramid& current,
@@ -69,12 +74,14 @@ class DenseTracker {
   [[nodiscard]] AlignmentStatus alignLevel(const ReferencePoints& points, const RgbdLevel& current,
                                            State& state);
   void addPrior(const State& state, NormalEquations& equations) const;
+  [[nodiscard]] std::optional<StepVector> solve(const NormalEquations& equations) const;
   void restrictBrightness(NormalEquations& equations) const;
   void setInformation(const ReferencePoints& points, const State& state,
                       Alignment& alignment) const;
 
   DenseTrackerOptions options_;
   ScaleModel scale_model_;
+  std::optional<PlanarMotion> planar_;
   Residuals residuals_;
 };
 

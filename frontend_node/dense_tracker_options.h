@@ -28,8 +28,11 @@ struct DenseTrackerOptions {
   double min_gradient = 2.0;    ///< grey levels per pixel a textured pixel needs, [0, 255]
   double textured_share = 0.3;  ///< of a level's pixels kept for their texture at most, [0, 1]
   int flat_grid_step = 4;       ///< grid of the pixels kept for their depth alone [px], [1, 64]
-  double min_depth = 0.2;       ///< nearest depth used [m], [0.01, 100]
-  double max_depth = 8.0;       ///< farthest depth used [m], [0.1, 100]
+  /// Depth of the keyframe's pixels from the plane fitted there, where it agrees, instead of the
+  /// few pixels around: less noise, but what is nearly flat becomes flat.
+  bool plane_landmarks = true;
+  double min_depth = 0.2;  ///< nearest depth used [m], [0.01, 100]
+  double max_depth = 8.0;  ///< farthest depth used [m], [0.1, 100]
 
   double degrees_of_freedom = 5.0;  ///< nu of the t-distribution, [1, 100]
   double min_sigma_grey = 0.3;      ///< least scale of the grey residuals, (0, 255]
@@ -61,6 +64,7 @@ struct DenseTrackerOptions {
     visit("min_gradient", self.min_gradient);
     visit("textured_share", self.textured_share);
     visit("flat_grid_step", self.flat_grid_step);
+    visit("plane_landmarks", self.plane_landmarks);
     visit("min_depth", self.min_depth);
     visit("max_depth", self.max_depth);
     visit("degrees_of_freedom", self.degrees_of_freedom);

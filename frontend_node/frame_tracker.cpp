@@ -76,7 +76,11 @@ void FrameTracker::placeSegment(double stamp) {
   is_placed_ = true;
   std::optional<Eigen::Isometry3d> T_odom_camera = odometry_.findOdomCamera(camera_frame_, stamp);
   if (!T_odom_camera) T_odom_camera = odometry_.findBaseCamera(camera_frame_);
-  if (T_odom_camera) frontend_->setNextPose(*T_odom_camera);
+  if (T_odom_camera) return frontend_->setNextPose(*T_odom_camera);
+  if (options_.planar) {
+    ROS_WARN_STREAM("~planar takes the camera for level: tf does not know how it is mounted; publish "
+                    << "~base_frame -> " << camera_frame_);
+  }
 }
 
 std::vector<CompletedKeyframe> FrameTracker::takeCompleted() {

@@ -19,6 +19,9 @@ struct FrontendOptions {
   /// Remap images of a camera with lens distortion to the pinhole without it; false: track as if
   /// there were no distortion. Without effect on cameras that have none.
   bool undistort = true;
+  /// The camera moves in parallel to a flat floor, as on a robot with wheels: its height, roll and
+  /// pitch stay those of the start, exactly.
+  bool planar = false;
   DenseTrackerOptions tracking;
   KeyframeSelectorOptions keyframe;
   LossOptions lost;
@@ -31,6 +34,7 @@ struct FrontendOptions {
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("undistort", self.undistort);
+    visit("planar", self.planar);
     visitFields("tracking/", self.tracking, visit);
     visitFields("keyframe/", self.keyframe, visit);
     visitFields("lost/", self.lost, visit);

@@ -34,6 +34,11 @@ class Relocaliser {
   /// Throws std::invalid_argument when options fail their check.
   Relocaliser(const HistoryOptions& options, const DenseTrackerOptions& tracking);
 
+  /// See DenseTracker::setPlanarMotion.
+  void setPlanarMotion(const std::optional<PlanarMotion>& planar) {
+    tracker_.setPlanarMotion(planar);
+  }
+
   /// True when an alignment leaves no doubt (see LossDetector::findDoubt).
   using Judge = std::function<bool(const Alignment&, bool is_lenient)>;
 

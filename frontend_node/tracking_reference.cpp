@@ -14,6 +14,8 @@ namespace {
 constexpr float kEdgeSpread = 0.1F;
 constexpr int kWindowRadius = 2;
 constexpr int kMinWindowPixels = 10;
+/// A plane replaces the inverse depth of a window when it differs by less than its noise [1/m].
+constexpr float kPlaneAgreement = 6e-3F;
 /// In the place of a squared gradient.
 constexpr float kNeverChosen = -1.0F;
 
@@ -61,6 +63,18 @@ std::optional<SurfaceFit> fitSurface(const Image<GreyDepth>& pixels, int x, int 
   const float q_x = (syy * sxq - sxy * syq) / determinant;
   const float q_y = (sxx * syq - sxy * sxq) / determinant;
   return SurfaceFit{centre + (sq - q_x * sx - q_y * sy) / n, q_x, q_y};
+}
+
+/// Takes a surface at pixel (x, y) to the plane that is seen there, if it agrees.
+void snapToPlane(const PlaneLandmarks& planes, const LevelCamera& camera, int x, int y,
+                 SurfaceFit& fit) {
+  const float u = (static_cast<float>(x) - camera.cx) / camera.fx;
+  const float v = (static_cast<float>(y) - camera.cy) / camera.fy;
+  const Eigen::Vector3f* plane = planes.find(u, v);
+  if (plane == nullptr) return;
+  const float q = plane->dot(Eigen::Vector3f(u, v, 1.0F));
+  if (std::abs(q - fit.q) > kPlaneAgreement) return;
+  fit = {q, plane->x() / camera.fx, plane->y() / camera.fy};
 }
 
 /// Squared gradient of grey [(levels/px)^2]; 0 on the border the windows cannot reach.
@@ -202,15 +216,22 @@ void pad(ReferencePoints& points) {
   points.block.resize(padded, 0);
 }
 
-ReferencePoints choosePoints(const RgbdPyramid& pyramid, std::size_t number,
-                             const MovedIn& moved_in, double textured_share, int block_side,
+/// What tells which pixels of a level are chosen, and their depth.
+struct Choice {
+  double textured_share;  ///< of the pixels
+  int block_side;         ///< [px]
+  const MovedIn& moved_in;
+  const PlaneLandmarks* planes;  ///< may be null
+};
+
+ReferencePoints choosePoints(const RgbdPyramid& pyramid, std::size_t number, const Choice& choice,
                              const DenseTrackerOptions& options) {
   const RgbdLevel& level = pyramid.levels()[number];
   const Image<GreyDepth>& pixels = level.pixels;
   Image<float> squares = squaredGradients(pixels);
-  moved_in.exclude(number, squares);
-  const float threshold = gradientThreshold(squares, textured_share, options.min_gradient);
-  const int side = std::max(block_side, 1);
+  choice.moved_in.exclude(number, squares);
+  const float threshold = gradientThreshold(squares, choice.textured_share, options.min_gradient);
+  const int side = std::max(choice.block_side, 1);
   const int blocks_across = (pixels.width() + side - 1) / side;
   ReferencePoints points;
   for (int y = kWindowRadius; y < pixels.height() - kWindowRadius; ++y) {
@@ -218,8 +239,9 @@ ReferencePoints choosePoints(const RgbdPyramid& pyramid, std::size_t number,
       const bool on_grid = x % options.flat_grid_step == 0 && y % options.flat_grid_step == 0;
       if (!(on_grid || squares(x, y) > threshold) || squares(x, y) == kNeverChosen) continue;
       if (!(pixels(x, y).inverse_depth > 0.0F) || isBehindEdge(pixels, x, y)) continue;
-      const std::optional<SurfaceFit> fit = fitSurface(pixels, x, y);
+      std::optional<SurfaceFit> fit = fitSurface(pixels, x, y);
       if (!fit) continue;
+      if (choice.planes != nullptr) snapToPlane(*choice.planes, level.camera, x, y, *fit);
       appendPoint(level, x, y, *fit, points);
       points.block.push_back(static_cast<std::uint16_t>(y / side * blocks_across + x / side));
     }
@@ -232,13 +254,14 @@ ReferencePoints choosePoints(const RgbdPyramid& pyramid, std::size_t number,
 }  // namespace
 
 TrackingReference::TrackingReference(const RgbdPyramid& pyramid, const DenseTrackerOptions& options,
-                                     const std::vector<EarlierImage>& earlier) {
+                                     const std::vector<EarlierImage>& earlier,
+                                     const PlaneLandmarks* planes) {
   double share = options.textured_share;
   int block_side = options.information_block;
   const MovedIn moved_in(pyramid, earlier);
   for (std::size_t i = 0; i < pyramid.levels().size(); ++i) {
-    levels_.push_back(
-        choosePoints(pyramid, i, moved_in, std::min(share, 1.0), block_side, options));
+    const Choice choice{std::min(share, 1.0), block_side, moved_in, planes};
+    levels_.push_back(choosePoints(pyramid, i, choice, options));
     share *= 2.0;
     block_side /= 2;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planecloud_slam/frontend_node/dense_tracker_options.h"
+#include "planecloud_slam/frontend_node/plane_landmarks.h"
 #include "planecloud_slam/frontend_node/rgbd_pyramid.h"
 
 namespace planecloud {
@@ -45,8 +46,11 @@ class TrackingReference {
   /// Chooses the pixels that inform: the strongest gradients, and a sparse grid of all others for
   /// their depth. Pixels next to a depth edge are left out, unless they lie on its near side, and
   /// what has moved into the view: points at places that one of the `earlier` images saw through.
+  /// Depth is that of the pixels around a point, or of the plane among `planes`, when given, that
+  /// agrees with it.
   TrackingReference(const RgbdPyramid& pyramid, const DenseTrackerOptions& options,
-                    const std::vector<EarlierImage>& earlier = {});
+                    const std::vector<EarlierImage>& earlier = {},
+                    const PlaneLandmarks* planes = nullptr);
 
   /// Finest first.
   [[nodiscard]] const std::vector<ReferencePoints>& levels() const { return levels_; }

@@ -48,7 +48,9 @@ TrackingSession::TrackingSession(const FrontendOptions& options, const CameraInt
       relocaliser_(options.history, options.tracking),
       open_(options.local_map, camera.rectified()),
       next_id_(std::move(first_id)),
-      T_odom_start_(levelledCamera()) {}
+      T_odom_start_(levelledCamera()) {
+  if (options.tracking.plane_landmarks) landmarks_.emplace(camera.rectified(), options.plane_fit);
+}
 
 FrameResult TrackingSession::track(const RgbdFrame& frame,
                                    const std::optional<Eigen::Isometry3d>& T_previous_current) {
@@ -74,6 +76,7 @@ void TrackingSession::predictMotion(double stamp,
   } else if (velocity_ && !isLost()) {
     T_reference_predicted_ = T_reference_last_ * expSe3(*velocity_ * (stamp - last_stamp_));
   }
+  if (planar_) T_reference_predicted_ = planar_->nearest(T_reference_predicted_);
 }
 
 FrameResult TrackingSession::process(const RgbdFrame& frame) {
@@ -221,6 +224,7 @@ FrameResult TrackingSession::bridgeByWheels(const RgbdFrame& frame) {
 
 FrameResult TrackingSession::openSegment(const RgbdFrame& frame) {
   ++segment_;
+  if (options_.planar) restrictToFloor();
   openKeyframe(frame, T_odom_start_, {});
   last_good_stamp_ = frame.stamp;
   FrameResult result;
@@ -230,13 +234,22 @@ FrameResult TrackingSession::openSegment(const RgbdFrame& frame) {
   return result;
 }
 
+/// Up is where the z axis of the odometry frame points.
+void TrackingSession::restrictToFloor() {
+  planar_.emplace(T_odom_start_.linear().transpose() * Eigen::Vector3d::UnitZ());
+  tracker_.setPlanarMotion(planar_);
+  relocaliser_.setPlanarMotion(planar_);
+}
+
 void TrackingSession::openKeyframe(const RgbdFrame& frame, const Eigen::Isometry3d& T_odom_camera,
                                    std::vector<RelativePoseEdge> edges) {
   completeKeyframe();
   reference_.view = std::make_shared<const KeyframeView>(KeyframeView{
       next_id_, segment_, T_odom_camera, images_.pyramid(), describeView(images_.pyramid())});
+  if (landmarks_) landmarks_->assign(images_.depth(frame));
   reference_.points = std::make_shared<const TrackingReference>(
-      images_.pyramid(), options_.tracking, earlierImages(T_odom_camera));
+      images_.pyramid(), options_.tracking, earlierImages(T_odom_camera),
+      landmarks_ ? &*landmarks_ : nullptr);
   ++next_id_.number;
   open_.open(images_.full(frame), reference_, std::move(edges));
   brightness_ = Brightness{};

@@ -58,6 +58,7 @@ class TrackingSession {
   [[nodiscard]] std::vector<EarlierImage> earlierImages(
       const Eigen::Isometry3d& T_odom_camera) const;
   void switchTo(const Relocalisation& found);
+  void restrictToFloor();
   void openKeyframe(const RgbdFrame& frame, const Eigen::Isometry3d& T_odom_camera,
                     std::vector<RelativePoseEdge> edges);
   void completeKeyframe();
@@ -70,6 +71,8 @@ class TrackingSession {
   LossDetector loss_;
   Relocaliser relocaliser_;
   OpenKeyframe open_;
+  std::optional<PlaneLandmarks> landmarks_;
+  std::optional<PlanarMotion> planar_;  ///< of this segment, when motion is restricted to it
 
   TrackedReference reference_;  ///< what frames are aligned to; no view: none
   std::deque<KeyframeViewPtr> history_;

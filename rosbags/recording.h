@@ -39,6 +39,9 @@ class Recording {
   [[nodiscard]] virtual const Trajectory& groundTruth() const = 0;
   /// Exact depth of the frame last returned [m], NaN: none; only the built-in world knows it.
   [[nodiscard]] virtual std::optional<Image<float>> trueDepth() const { return std::nullopt; }
+  /// Where the first frame was taken in the odometry frame, at least its height and tilt; none: a
+  /// level camera is assumed.
+  [[nodiscard]] virtual std::optional<Eigen::Isometry3d> startPose() const { return std::nullopt; }
   /// Colour of the frame last returned, 8UC3, blue first; empty when only grey is known.
   [[nodiscard]] virtual cv::Mat color() const { return {}; }
 };

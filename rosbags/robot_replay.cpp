@@ -84,6 +84,9 @@ class RobotReplay::Impl {
       // The session starts with the recording, so that a replay never depends on the clock.
       frontend_ = std::make_unique<Frontend>(options_.frontend, recording_->camera(),
                                              recording_->robot(), nanoseconds(frame.stamp));
+      if (const auto T_odom_camera = recording_->startPose()) {
+        frontend_->setNextPose(*T_odom_camera);
+      }
     } else if (frame.stamp < last_stamp_) {
       step.note = describeJump(recording_->robot(), last_stamp_, frame.stamp);
       frontend_->startNewSegment();

@@ -56,6 +56,8 @@ const std::vector<Switch>& switches() {
       {"nearly Gaussian weights",
        [](FrontendOptions& o) { o.tracking.degrees_of_freedom = 100.0; }},
       {"no flat pixels", [](FrontendOptions& o) { o.tracking.flat_grid_step = 64; }},
+      {"planar motion", [](FrontendOptions& o) { o.planar = true; }},
+      {"no planes as landmarks", [](FrontendOptions& o) { o.tracking.plane_landmarks = false; }},
       {"640x480 finest", [](FrontendOptions& o) { o.tracking.finest_width = 640; }},
       {"no entropy ratio", [](FrontendOptions& o) { o.keyframe.min_entropy_ratio = 0.0; }},
       {"no depth fusion", [](FrontendOptions& o) { o.local_map.fuse = false; }},

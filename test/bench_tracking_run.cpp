@@ -44,6 +44,7 @@ const std::vector<double>& spacings() {
 
 TrackingRun track(const FrameSet& set, const FrontendOptions& options, bool use_wheels) {
   Frontend frontend(options, set.camera, "robot1", kSession);
+  if (set.T_base_camera) frontend.setNextPose(*set.T_base_camera);
   KeyframeCompressor compressor(options);
   TrackingRun run;
   for (std::size_t i = 0; i < set.frames.size(); ++i) {

@@ -26,6 +26,7 @@ void addWheels(const HallwayRecording& recording, FrameSet& set) {
   constexpr std::size_t kStep =
       HallwayRecording::kOdometryPerSecond / HallwayRecording::kFramesPerSecond;
   const Eigen::Isometry3d T_base_camera = HallwayRecording::T_base_camera();
+  set.T_base_camera = T_base_camera;
   set.wheels.resize(set.frames.size());
   for (std::size_t i = 1; i < set.frames.size() && i * kStep < recording.odometry().size(); ++i) {
     const Eigen::Isometry3d T_odom_previous = toTransform(recording.odometry()[(i - 1) * kStep]);

@@ -20,6 +20,7 @@ struct FrameSet {
   Trajectory truth;  ///< optical frame in the world; empty: unknown
   /// Motion of the optical frame since the frame before, as the wheels report it; empty: no wheels.
   std::vector<std::optional<Eigen::Isometry3d>> wheels;
+  std::optional<Eigen::Isometry3d> T_base_camera;  ///< of a robot that drives on a floor
 };
 
 /// Reads INPUT: a folder in the TUM layout, `hallway:SEED` (the drive around the block) or
@@ -40,6 +41,9 @@ class MemoryRecording : public Recording {
     return *set_->frames[position_++];
   }
   [[nodiscard]] const Trajectory& groundTruth() const override { return set_->truth; }
+  [[nodiscard]] std::optional<Eigen::Isometry3d> startPose() const override {
+    return set_->T_base_camera;
+  }
 
  private:
   std::shared_ptr<const FrameSet> set_;

@@ -245,6 +245,38 @@ TEST(Frontend, WheelOdometryCarriesOverAFastTurn) {
   EXPECT_LT(rotationAngle(result.T_reference_camera.inverse() * turn), 2e-3);
 }
 
+/// What a camera on a driving robot sees. The room's floor is at y = 2: up is -y of the camera.
+RgbdFrame drivingFrame(int i) {
+  synthetic::SceneOptions scene;
+  scene.grey_noise = 2.0;
+  scene.depth_noise = 0.004;
+  scene.seed = static_cast<unsigned>(i);
+  const Eigen::Isometry3d T = pose(0.02 * i - 0.3, 0, 0.015 * i - 0.2, 0, -0.008 * i, 0);
+  RgbdFrame frame = synthetic::render(synthetic::camera(), T, scene);
+  frame.stamp = 100.0 + i * kFramePeriod;
+  return frame;
+}
+
+TEST(Frontend, PlanarMotionKeepsHeightAndTiltExactly) {
+  FrontendOptions options;
+  options.planar = true;
+  Frontend frontend = makeFrontend(options);
+  const Eigen::Isometry3d T_odom_first = frontend.track(drivingFrame(0)).T_odom_camera;
+  FrameResult last;
+  for (int i = 1; i <= 30; ++i) {
+    last = frontend.track(drivingFrame(i));
+    ASSERT_EQ(last.status, TrackingStatus::kTracked) << i << ": " << last.reason;
+    const Eigen::Isometry3d T_first_camera = T_odom_first.inverse() * last.T_odom_camera;
+    EXPECT_NEAR(T_first_camera.translation().y(), 0.0, 1e-9) << i;
+    EXPECT_TRUE((T_first_camera.linear() * Eigen::Vector3d::UnitY())
+                    .isApprox(Eigen::Vector3d::UnitY(), 1e-9))
+        << i;
+  }
+  const Eigen::Isometry3d T_first_last = T_odom_first.inverse() * last.T_odom_camera;
+  const Eigen::Isometry3d truth = pose(-0.3, 0, -0.2).inverse() * pose(0.3, 0, 0.25, 0, -0.24, 0);
+  EXPECT_LT((truth.inverse() * T_first_last).translation().norm(), 0.008);  // 1 % of the path
+}
+
 TEST(Frontend, NamesTheCureForImagesOfAnotherSize) {
   Frontend frontend = makeFrontend();
   RgbdFrame frame = pathFrame(0);
