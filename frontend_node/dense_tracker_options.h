@@ -31,6 +31,9 @@ struct DenseTrackerOptions {
   /// Depth of the keyframe's pixels from the plane fitted there, where it agrees, instead of the
   /// few pixels around: less noise, but what is nearly flat becomes flat.
   bool plane_landmarks = true;
+  /// Where the stamps of colour and depth differ, colour is moved to where it was seen when the
+  /// depth was taken, by the camera's velocity; false: as if they had been taken at once.
+  bool color_motion = true;
   double min_depth = 0.2;  ///< nearest depth used [m], [0.01, 100]
   double max_depth = 8.0;  ///< farthest depth used [m], [0.1, 100]
 
@@ -65,6 +68,7 @@ struct DenseTrackerOptions {
     visit("textured_share", self.textured_share);
     visit("flat_grid_step", self.flat_grid_step);
     visit("plane_landmarks", self.plane_landmarks);
+    visit("color_motion", self.color_motion);
     visit("min_depth", self.min_depth);
     visit("max_depth", self.max_depth);
     visit("degrees_of_freedom", self.degrees_of_freedom);

@@ -42,6 +42,7 @@ TrackedFrame FrameTracker::track(const InputFrame& input, const ImageReading& re
   checkSizes(input);
   TrackedFrame tracked;
   tracked.frame.stamp = input.depth->header.stamp.toSec();
+  tracked.frame.color_delay = input.color->header.stamp.toSec() - tracked.frame.stamp;
   tracked.frame.grey = greyFromMessage(*input.color);
   tracked.frame.depth = depthFromMessage(*input.depth);
   if (reading.wants_color) tracked.frame.color = colorFromMessage(*input.color);
@@ -78,8 +79,9 @@ void FrameTracker::placeSegment(double stamp) {
   if (!T_odom_camera) T_odom_camera = odometry_.findBaseCamera(camera_frame_);
   if (T_odom_camera) return frontend_->setNextPose(*T_odom_camera);
   if (options_.planar) {
-    ROS_WARN_STREAM("~planar takes the camera for level: tf does not know how it is mounted; publish "
-                    << "~base_frame -> " << camera_frame_);
+    ROS_WARN_STREAM(
+        "~planar takes the camera for level: tf does not know how it is mounted; publish "
+        << "~base_frame -> " << camera_frame_);
   }
 }
 

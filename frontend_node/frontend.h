@@ -24,6 +24,7 @@ struct RgbdFrame {
   Image<std::uint8_t> grey;  ///< width x height, 0..255
   Image<float> depth;        ///< width x height, along the optical axis [m]; NaN: none
   Image<Rgb8> color;         ///< width x height, or empty: only the texture is made of it
+  double color_delay = 0.0;  ///< stamp of the colour image less that of the depth image [s]
 };
 
 enum class TrackingStatus {

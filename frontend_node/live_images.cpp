@@ -9,15 +9,15 @@ LiveImages::LiveImages(const CameraIntrinsics& camera, const DenseTrackerOptions
   if (camera.hasDistortion()) rectifier_.emplace(camera);
 }
 
-void LiveImages::assign(const RgbdFrame& frame) {
-  if (!rectifier_) return pyramid_.assign(frame.grey.view(), frame.depth.view());
+void LiveImages::assign(const RgbdFrame& frame, const Eigen::Isometry3d& T_color_depth) {
+  if (!rectifier_) return pyramid_.assign(frame.grey.view(), frame.depth.view(), T_color_depth);
   rectifier_->rectifyDepth(frame.depth, rectified_.depth);
   if (pyramid_.takesHalfGrey()) {
     rectifier_->rectifyHalfGrey(frame.grey, half_grey_);
-    return pyramid_.assignHalf(half_grey_.view(), rectified_.depth.view());
+    return pyramid_.assignHalf(half_grey_.view(), rectified_.depth.view(), T_color_depth);
   }
   rectifier_->rectifyColors(frame, rectified_);
-  pyramid_.assign(rectified_.grey.view(), rectified_.depth.view());
+  pyramid_.assign(rectified_.grey.view(), rectified_.depth.view(), T_color_depth);
 }
 
 ImageView<float> LiveImages::depth(const RgbdFrame& frame) const {

@@ -17,8 +17,9 @@ class LiveImages {
   /// their check.
   LiveImages(const CameraIntrinsics& camera, const DenseTrackerOptions& options);
 
-  /// Makes `pyramid` and `depth` of `frame`, of the camera's size.
-  void assign(const RgbdFrame& frame);
+  /// Makes `pyramid` and `depth` of `frame`, of the camera's size. `T_color_depth`: see moveGrey.
+  void assign(const RgbdFrame& frame,
+              const Eigen::Isometry3d& T_color_depth = Eigen::Isometry3d::Identity());
 
   [[nodiscard]] const RgbdPyramid& pyramid() const { return pyramid_; }
   /// Depth [m, NaN: none] of `frame`, the one assigned last.

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "planecloud_slam/frontend_node/grey_motion.h"
+
 namespace planecloud {
 namespace {
 
@@ -58,23 +60,28 @@ RgbdPyramid::RgbdPyramid(const CameraIntrinsics& camera, const DenseTrackerOptio
   }
 }
 
-void RgbdPyramid::assign(ImageView<std::uint8_t> grey, ImageView<float> depth) {
-  if (!takesHalfGrey()) return assignFullSize(grey, depth);
+void RgbdPyramid::assign(ImageView<std::uint8_t> grey, ImageView<float> depth,
+                         const Eigen::Isometry3d& T_color_depth) {
+  if (!takesHalfGrey()) {
+    assignFullSize(grey, depth);
+    return halveOn(T_color_depth);
+  }
   half_grey_.resize(grey.width() / 2, grey.height() / 2);
   for (int y = 0; y < half_grey_.height(); ++y) {
     vectorPyramidKernels().halve_grey({grey.row(2 * y), grey.row(2 * y + 1)}, half_grey_.width(),
                                       half_grey_.row(y));
   }
-  assignHalf(half_grey_.view(), depth);
+  assignHalf(half_grey_.view(), depth, T_color_depth);
 }
 
-void RgbdPyramid::assignHalf(ImageView<float> half_grey, ImageView<float> depth) {
+void RgbdPyramid::assignHalf(ImageView<float> half_grey, ImageView<float> depth,
+                             const Eigen::Isometry3d& T_color_depth) {
   RgbdLevel& first = finer_.empty() ? levels_.front() : finer_.front();
   for (int y = 0; y < first.camera.height; ++y) {
     vectorPyramidKernels().halve_depth({depth.row(2 * y), depth.row(2 * y + 1), half_grey.row(y)},
                                        depth_range_, first.camera.width, first.pixels.row(y));
   }
-  halveOn();
+  halveOn(T_color_depth);
 }
 
 void RgbdPyramid::assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth) {
@@ -86,13 +93,15 @@ void RgbdPyramid::assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> 
       pixels(x, y) = {static_cast<float>(grey(x, y)), is_usable ? 1.0F / z : 0.0F};
     }
   }
-  halveOn();
 }
 
 /// Makes all levels of the first one.
-void RgbdPyramid::halveOn() {
+void RgbdPyramid::halveOn(const Eigen::Isometry3d& T_color_depth) {
   for (std::size_t i = 1; i < finer_.size(); ++i) halve(finer_[i - 1], finer_[i]);
   if (!finer_.empty()) halve(finer_.back(), levels_.front());
+  if (!T_color_depth.matrix().isIdentity(0.0)) {
+    moveGrey(T_color_depth, levels_.front(), moved_grey_);
+  }
   for (std::size_t i = 1; i < levels_.size(); ++i) halve(levels_[i - 1], levels_[i]);
 }
 

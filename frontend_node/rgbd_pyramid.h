@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -42,10 +43,13 @@ class RgbdPyramid {
 
   /// Rebuilds every level from `grey` [0..255] and `depth` [m, NaN: none], both of the camera's
   /// size; depths outside the options' range count as none. Keeps the memory.
-  void assign(ImageView<std::uint8_t> grey, ImageView<float> depth);
+  /// `T_color_depth`: motion of the camera between the two, see moveGrey.
+  void assign(ImageView<std::uint8_t> grey, ImageView<float> depth,
+              const Eigen::Isometry3d& T_color_depth = Eigen::Isometry3d::Identity());
   /// The same when `half_grey`, the mean of each 2x2 pixels, is there already. Requires
   /// takesHalfGrey().
-  void assignHalf(ImageView<float> half_grey, ImageView<float> depth);
+  void assignHalf(ImageView<float> half_grey, ImageView<float> depth,
+                  const Eigen::Isometry3d& T_color_depth = Eigen::Isometry3d::Identity());
   /// The images are larger than the finest level.
   [[nodiscard]] bool takesHalfGrey() const { return first_halvings_ > 0; }
 
@@ -54,13 +58,14 @@ class RgbdPyramid {
 
  private:
   void assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth);
-  void halveOn();
+  void halveOn(const Eigen::Isometry3d& T_color_depth);
 
   DepthRange depth_range_;
   int first_halvings_;
   std::vector<RgbdLevel> finer_;  ///< levels above the finest tracked one, only steps to it
   std::vector<RgbdLevel> levels_;
-  Image<float> half_grey_;  ///< keeps its memory
+  Image<float> half_grey_;   ///< keeps its memory
+  Image<float> moved_grey_;  ///< likewise
 };
 
 }  // namespace planecloud

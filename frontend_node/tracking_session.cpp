@@ -79,13 +79,21 @@ void TrackingSession::predictMotion(double stamp,
   if (planar_) T_reference_predicted_ = planar_->nearest(T_reference_predicted_);
 }
 
+/// Motion of the camera between colour and depth image, T_color_depth.
+Eigen::Isometry3d TrackingSession::motionToDepth(const RgbdFrame& frame) const {
+  if (!options_.tracking.color_motion || !velocity_ || isLost()) {
+    return Eigen::Isometry3d::Identity();
+  }
+  return expSe3(-frame.color_delay * *velocity_);
+}
+
 FrameResult TrackingSession::process(const RgbdFrame& frame) {
   const std::string image_fault = loss_.findImageFault(frame);
   if (!image_fault.empty()) {
     last_was_usable_ = false;
     return lose(image_fault);
   }
-  images_.assign(frame);
+  images_.assign(frame, motionToDepth(frame));
   if (!isTracking()) return openSegment(frame);
   if (frame.stamp - last_good_stamp_ > options_.lost.max_gap) {
     return recover(frame, "the keyframe is not recognised after a gap");

@@ -45,6 +45,7 @@ class TrackingSession {
 
  private:
   void predictMotion(double stamp, const std::optional<Eigen::Isometry3d>& T_previous_current);
+  [[nodiscard]] Eigen::Isometry3d motionToDepth(const RgbdFrame& frame) const;
   [[nodiscard]] FrameResult process(const RgbdFrame& frame);
   [[nodiscard]] FrameResult accept(const RgbdFrame& frame, const Alignment& alignment,
                                    bool leaving);

@@ -184,6 +184,7 @@ RgbdFrame BagRecording::decode(const ImagePair& pair) {
   checkSizes(pair);
   RgbdFrame frame;
   frame.stamp = stampOf(pair.depth);
+  frame.color_delay = stampOf(pair.color) - frame.stamp;
   try {
     frame.grey = greyFromMessage(*pair.color);
   } catch (const MessageError& error) {

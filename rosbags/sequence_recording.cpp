@@ -15,6 +15,7 @@ std::optional<RgbdFrame> SequenceRecording::next() {
   SequenceImages images = readSequenceImages(folder_, pair);
   RgbdFrame frame;
   frame.stamp = pair.depth_stamp;
+  frame.color_delay = pair.color_stamp - pair.depth_stamp;
   frame.grey = greyFromColor(images.color);
   frame.depth = std::move(images.depth);
   color_ = std::move(images.color);

@@ -57,6 +57,7 @@ const std::vector<Switch>& switches() {
        [](FrontendOptions& o) { o.tracking.degrees_of_freedom = 100.0; }},
       {"no flat pixels", [](FrontendOptions& o) { o.tracking.flat_grid_step = 64; }},
       {"planar motion", [](FrontendOptions& o) { o.planar = true; }},
+      {"no colour motion", [](FrontendOptions& o) { o.tracking.color_motion = false; }},
       {"no planes as landmarks", [](FrontendOptions& o) { o.tracking.plane_landmarks = false; }},
       {"640x480 finest", [](FrontendOptions& o) { o.tracking.finest_width = 640; }},
       {"no entropy ratio", [](FrontendOptions& o) { o.keyframe.min_entropy_ratio = 0.0; }},
