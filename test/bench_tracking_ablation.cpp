@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <cstdio>
 
 #include "bench_tracking.h"
@@ -10,7 +11,8 @@ namespace {
 
 /// Means over the spacings.
 struct Row {
-  double median = 0.0, p95 = 0.0, odometry_ate = 0.0, rpe = 0.0, drift = 0.0, ate = 0.0;
+  double median = 0.0, p95 = 0.0, odometry_ate = 0.0, rpe = 0.0, turn_rpe = 0.0, drift = 0.0,
+         ate = 0.0;
   double keyframes_per_metre = 0.0, kilobytes_per_metre = 0.0, lost = 0.0;
 };
 
@@ -26,6 +28,7 @@ Row measure(const std::shared_ptr<const FrameSet>& set, FrontendOptions options)
     times.insert(times.end(), run.track_times.begin(), run.track_times.end());
     row.odometry_ate += share * errors.ate_rmse;
     row.rpe += share * errors.rpe_trans_rmse;
+    row.turn_rpe += share * errors.rpe_rot_rmse * 180.0 / M_PI;
     row.drift += share * errors.end_drift;
     row.ate += share * systemErrors(set, options).ate_rmse;
     row.keyframes_per_metre += share * static_cast<double>(run.keyframes.size()) / metres;
@@ -72,15 +75,17 @@ const std::vector<Switch>& switches() {
 void runAblation(const FrameSets& sets, const FrontendOptions& options, bool default_only) {
   std::printf("means over keyframe spacings of 0.15, 0.20, 0.25 and 0.30 m\n");
   for (const auto& set : sets) {
-    std::printf("%-24s %7s %7s %6s %8s %8s %7s %8s %6s %6s\n", set->name.c_str(), "median",
-                "p95 ms", "lost", "odo ATE", "RPE m/s", "drift%", "sys ATE", "kf/m", "KB/m");
+    std::printf("%-24s %7s %7s %6s %8s %8s %6s %7s %8s %6s %6s\n", set->name.c_str(), "median",
+                "p95 ms", "lost", "odo ATE", "RPE m/s", "deg/s", "drift%", "sys ATE", "kf/m",
+                "KB/m");
     for (const Switch& turned : switches()) {
       FrontendOptions changed = options;
       turned.turn(changed);
       const Row row = measure(set, changed);
-      std::printf("%-24s %7.2f %7.2f %6.1f %8.4f %8.4f %7.2f %8.4f %6.1f %6.1f\n", turned.name,
-                  1e3 * row.median, 1e3 * row.p95, row.lost, row.odometry_ate, row.rpe,
-                  100.0 * row.drift, row.ate, row.keyframes_per_metre, row.kilobytes_per_metre);
+      std::printf("%-24s %7.2f %7.2f %6.1f %8.4f %8.4f %6.3f %7.2f %8.4f %6.1f %6.1f\n",
+                  turned.name, 1e3 * row.median, 1e3 * row.p95, row.lost, row.odometry_ate, row.rpe,
+                  row.turn_rpe, 100.0 * row.drift, row.ate, row.keyframes_per_metre,
+                  row.kilobytes_per_metre);
       std::fflush(stdout);
       if (default_only) break;
     }
