@@ -15,9 +15,6 @@ constexpr double kLongestFrameGap = 0.2;
 /// many.
 constexpr std::size_t kEarlierImages = 4;
 
-/// A motion goes on as it was for no longer than this [s].
-constexpr double kLongestExtrapolation = 3.0;
-
 /// A level camera looking along x of the odometry frame (x forward, y left, z up).
 Eigen::Isometry3d levelledCamera() {
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
@@ -73,18 +70,18 @@ void TrackingSession::predictMotion(double stamp,
   wheels_since_good_ = T_previous_current && (wheels_since_good_ || !isLost());
   if (T_previous_current) {
     T_reference_predicted_ = T_reference_predicted_ * *T_previous_current;
-  } else if (velocity_ && !isLost()) {
-    T_reference_predicted_ = T_reference_last_ * expSe3(*velocity_ * (stamp - last_stamp_));
+  } else if (const auto T_last_current = motion_.after(stamp - last_stamp_);
+             T_last_current && !isLost()) {
+    T_reference_predicted_ = T_reference_last_ * *T_last_current;
   }
   if (planar_) T_reference_predicted_ = planar_->nearest(T_reference_predicted_);
 }
 
 /// Motion of the camera between colour and depth image, T_color_depth.
 Eigen::Isometry3d TrackingSession::motionToDepth(const RgbdFrame& frame) const {
-  if (!options_.tracking.color_motion || !velocity_ || isLost()) {
-    return Eigen::Isometry3d::Identity();
-  }
-  return expSe3(-frame.color_delay * *velocity_);
+  const std::optional<Eigen::Isometry3d> T_color_depth = motion_.after(-frame.color_delay);
+  const bool is_known = options_.tracking.color_motion && T_color_depth && !isLost();
+  return is_known ? *T_color_depth : Eigen::Isometry3d::Identity();
 }
 
 FrameResult TrackingSession::process(const RgbdFrame& frame) {
@@ -122,10 +119,7 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
                                     bool leaving) {
   const Eigen::Isometry3d& T_reference_camera = alignment.T_reference_current;
   const double seconds = frame.stamp - last_good_stamp_;
-  if (seconds > 0.0) {
-    velocity_ = logSe3(T_reference_last_.inverse() * T_reference_camera) / seconds;
-    last_velocity_ = *velocity_;
-  }
+  if (seconds > 0.0) motion_.observe(T_reference_last_.inverse() * T_reference_camera, seconds);
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
   brightness_ = alignment.brightness;
   const bool is_obstructed = loss_.isObstructed(alignment);
@@ -162,7 +156,7 @@ FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& 
     return loss_.findDoubt(alignment, is_lenient).empty();
   };
   const std::optional<Relocalisation> found = relocaliser_.find(
-      images_.pyramid(), {{reference_.view, reference_.points, possibleMotions(frame.stamp)}},
+      images_.pyramid(), {{reference_.view, reference_.points, possiblePoses(frame.stamp)}},
       history_, is_doubtless);
   if (found) return resume(frame, *found);
   if (usable_lost_ < options_.lost.new_segment_after) return lose(fault);
@@ -171,21 +165,13 @@ FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& 
   return openSegment(frame);
 }
 
-/// Where the camera may have gone since the last good frame: as predicted, nowhere, on as before at
-/// some speed and with another turn, or straight ahead.
-std::vector<Eigen::Isometry3d> TrackingSession::possibleMotions(double stamp) const {
-  std::vector<Eigen::Isometry3d> motions = {T_reference_predicted_, T_reference_last_};
-  const double seconds = std::min(stamp - last_good_stamp_, kLongestExtrapolation);
-  for (const double share : {0.6, 1.0}) {
-    for (const double turn : {0.0, -0.15, 0.15, -0.3, 0.3}) {
-      motions.push_back(T_reference_last_ * expSe3(last_velocity_ * (share * seconds)) *
-                        Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()));
-    }
+/// Where the camera may have gone since the last good frame, what is predicted first.
+std::vector<Eigen::Isometry3d> TrackingSession::possiblePoses(double stamp) const {
+  std::vector<Eigen::Isometry3d> poses = {T_reference_predicted_, T_reference_last_};
+  for (const Eigen::Isometry3d& T : motion_.possibleMotions(stamp - last_good_stamp_)) {
+    poses.push_back(T_reference_last_ * T);
   }
-  for (const double forwards : {0.4, 0.8, 1.2}) {
-    motions.push_back(T_reference_last_ * Eigen::Translation3d(0.0, 0.0, forwards));
-  }
-  return motions;
+  return poses;
 }
 
 FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation& found) {
@@ -196,14 +182,14 @@ FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation
   FrameResult result = accept(frame, found.alignment, leaving);
   if (is_elsewhere) {
     result.status = TrackingStatus::kRelocalised;
-    velocity_.reset();
+    motion_.forget();
   }
   return result;
 }
 
 /// The pose stays where it was last known, or goes with the wheels.
 FrameResult TrackingSession::lose(const std::string& reason) {
-  velocity_.reset();
+  motion_.forget();
   FrameResult result;
   result.status = TrackingStatus::kLost;
   result.reason = reason;
@@ -296,7 +282,7 @@ void TrackingSession::endSegment() {
   completeKeyframe();
   T_odom_start_ = reference_.view->T_odom_camera * T_reference_last_;
   reference_ = {};
-  velocity_.reset();
+  motion_.forget();
 }
 
 }  // namespace planecloud

@@ -13,6 +13,7 @@
 #include "planecloud_slam/frontend_node/keyframe_selector.h"
 #include "planecloud_slam/frontend_node/live_images.h"
 #include "planecloud_slam/frontend_node/loss_detector.h"
+#include "planecloud_slam/frontend_node/motion_model.h"
 #include "planecloud_slam/frontend_node/open_keyframe.h"
 #include "planecloud_slam/frontend_node/relocaliser.h"
 
@@ -50,7 +51,7 @@ class TrackingSession {
   [[nodiscard]] FrameResult accept(const RgbdFrame& frame, const Alignment& alignment,
                                    bool leaving);
   [[nodiscard]] FrameResult recover(const RgbdFrame& frame, const std::string& fault);
-  [[nodiscard]] std::vector<Eigen::Isometry3d> possibleMotions(double stamp) const;
+  [[nodiscard]] std::vector<Eigen::Isometry3d> possiblePoses(double stamp) const;
   [[nodiscard]] FrameResult resume(const RgbdFrame& frame, const Relocalisation& found);
   [[nodiscard]] FrameResult lose(const std::string& reason);
   [[nodiscard]] FrameResult bridgeByWheels(const RgbdFrame& frame);
@@ -84,8 +85,7 @@ class TrackingSession {
   Eigen::Isometry3d T_odom_start_;  ///< where the next segment begins
   Eigen::Isometry3d T_reference_last_ = Eigen::Isometry3d::Identity();       ///< last good frame
   Eigen::Isometry3d T_reference_predicted_ = Eigen::Isometry3d::Identity();  ///< this frame
-  std::optional<Vector6d> velocity_;                                         ///< [m/s, rad/s]
-  Vector6d last_velocity_ = Vector6d::Zero();                                ///< the same, kept
+  MotionModel motion_;
   Brightness brightness_;
   double last_stamp_ = 0.0;
   double last_good_stamp_ = 0.0;
