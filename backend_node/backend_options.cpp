@@ -14,17 +14,20 @@ std::string toString(RobustKernel kernel) {
       return "huber";
     case RobustKernel::kCauchy:
       return "cauchy";
+    case RobustKernel::kDcs:
+      return "dcs";
   }
-  throw std::invalid_argument("not a robust kernel: use none, huber or cauchy");
+  throw std::invalid_argument("not a robust kernel: use none, huber, cauchy or dcs");
 }
 
 void fromString(const std::string& text, RobustKernel& kernel) {
-  for (const RobustKernel k : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+  for (const RobustKernel k :
+       {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kDcs}) {
     if (toString(k) != text) continue;
     kernel = k;
     return;
   }
-  throw std::invalid_argument("\"" + text + "\": must be one of none, huber, cauchy");
+  throw std::invalid_argument("\"" + text + "\": must be one of none, huber, cauchy, dcs");
 }
 
 void LoopCandidateOptions::check() const {

@@ -15,6 +15,7 @@ enum class RobustKernel {
   kNone,
   kHuber,
   kCauchy,
+  kDcs,  ///< dynamic covariance scaling
 };
 
 [[nodiscard]] std::string toString(RobustKernel kernel);

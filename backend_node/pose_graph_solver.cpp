@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 
+#include "planecloud_slam/backend_node/dynamic_covariance_scaling.h"
 #include "planecloud_slam/backend_node/relative_pose_cost.h"
 
 namespace planecloud {
@@ -129,6 +130,8 @@ std::unique_ptr<ceres::LossFunction> makeKernel(const PoseGraphOptions& options)
       return std::make_unique<ceres::HuberLoss>(options.kernel_width);
     case RobustKernel::kCauchy:
       return std::make_unique<ceres::CauchyLoss>(options.kernel_width);
+    case RobustKernel::kDcs:
+      return std::make_unique<DynamicCovarianceScaling>(options.kernel_width);
   }
   return nullptr;
 }
