@@ -3,20 +3,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Frontend and backend on two hosts with a link of 1 Mbit/s between them that breaks for a minute,
 and a backend that is killed and started again: no keyframe is lost, and without acknowledgements
-some are. Two network namespaces stand for the hosts; without the right to make them it is skipped.
+some are; and what a metre of map costs on the wire. Two network namespaces stand for the hosts; without the right to make them it is skipped.
 
 PLANECLOUD_SLAM_LINK_CUT: how long the link is cut [s], 60 by default."""
 
 import contextlib
+import math
 import os
+import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 CUT = float(os.environ.get("PLANECLOUD_SLAM_LINK_CUT", "60"))
 INSIDE = "PLANECLOUD_SLAM_LINK_INSIDE"  # set within the backend's host: a suffix, or why to skip
+IMAGES = ["/camera/rgb/image_rect_color", "/camera/rgb/camera_info",
+          "/camera/depth_registered/image_raw"]
 ROBOT_ADDRESS, BASE_ADDRESS = "10.77.0.2", "10.77.0.1"
 
 
@@ -52,6 +57,13 @@ class Hosts:
 
     def set_link(self, state):
         run("ip", "-n", self.base, "link", "set", self.base_port, state)
+
+    def wire_bytes(self):
+        """Bytes of all frames that have crossed the link so far, in both directions."""
+        folder = f"/sys/class/net/{self.base_port}/statistics"
+        counts = subprocess.run(["ip", "netns", "exec", self.base, "cat", f"{folder}/rx_bytes",
+                                 f"{folder}/tx_bytes"], check=True, capture_output=True, text=True)
+        return sum(map(int, counts.stdout.split()))
 
     def on_robot(self):
         """What runs a command on the robot's host."""
@@ -106,6 +118,13 @@ class Link(unittest.TestCase):
         time.sleep(5)
         return backend
 
+    def play(self, bag):
+        """Images on the robot's host as fast as its camera took them."""
+        subprocess.run([*self.hosts.on_robot(), "rosbag", "play", "--wait-for-subscribers",
+                        "--quiet", bag, "/camera/depth_registered/image_raw:="
+                        "/camera/depth_registered/image_rect", "--topics", *IMAGES],
+                       check=True, timeout=120)
+
     def finish(self, frontend, camera):
         """Number of keyframes the frontend made."""
         camera.kill()
@@ -122,6 +141,42 @@ class Link(unittest.TestCase):
         backend.wait_for_value("keyframes missing", 0)
         frontend.wait_for_value("keyframes unacknowledged", 0, timeout=20)
         self.assertEqual("0", frontend.values["keyframes given up"])
+
+    def test_a_metre_of_map_costs_less_than_ten_kilobytes(self):
+        from harness import Watch
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "hallway.bag")
+            subprocess.run(["rosrun", "planecloud_slam", "make_hallway_bag", "--output", bag,
+                            "--duration", "20"], check=True, timeout=200)
+            backend = self.start_backend()
+            frontend = self.start("frontend_node", "frontend", self.hosts.on_robot(), tf_wait=0.0,
+                                  drop_frames="false", **{"texture/format": "none"})
+            for node in (frontend, backend):
+                node.close()  # or the diagnostics of the frontend would be counted
+            time.sleep(3)  # they have found each other
+            before = self.hosts.wire_bytes()
+            self.play(bag)
+            time.sleep(8)  # the last keyframe comes when the camera is idle
+            crossed = self.hosts.wire_bytes() - before
+            made = Watch("/frontend").wait_until_steady("keyframes")
+            Watch("/backend").wait_for_value("keyframes", made, timeout=20)
+            metres = self.path_length(backend, folder)
+        print(f"{crossed / metres / 1e3:.2f} KB a metre: {crossed} bytes for {made} keyframes "
+              f"along {metres:.1f} m", file=sys.stderr)
+        self.assertGreater(metres, 5.0)
+        self.assertLess(crossed / metres, 10e3)
+
+    @staticmethod
+    def path_length(backend, folder):
+        """From keyframe to keyframe, as the backend exports them [m]."""
+        import rospy
+        from planecloud_slam.srv import ExportMap
+        export = rospy.ServiceProxy(f"{backend.name}/export", ExportMap)
+        assert export(directory=folder).success
+        (trajectory,) = pathlib.Path(folder).glob("*_keyframes.txt")
+        positions = [tuple(map(float, line.split()[1:4]))
+                     for line in trajectory.read_text().splitlines() if not line.startswith("#")]
+        return sum(map(math.dist, positions, positions[1:]))
 
     def test_without_acknowledgements_keyframes_are_lost(self):
         backend = self.start_backend()
