@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <random>
 
 #include "planecloud_slam/rosbags/hallway_recording.h"
+#include "planecloud_slam/rosbags/trajectory_evaluation.h"
 
 namespace planecloud {
 namespace {
@@ -58,8 +60,19 @@ void doubleExposure(RgbdFrame& frame, double, Random&) {
   for (std::uint8_t& pixel : frame.grey) pixel = toGrey(2.0 * pixel);
 }
 
-/// Somebody crosses the view from left to right at 1.2 m within 2 s, as wide as half the image.
-void walkThrough(RgbdFrame& frame, double seconds, Random& random) {
+/// Where somebody can pass in front of what a frame shows: at 1.2 m, or nearer where that is near.
+float passingDistance(const RgbdFrame& frame) {
+  std::vector<float> depths;
+  std::copy_if(frame.depth.begin(), frame.depth.end(), std::back_inserter(depths),
+               [](float z) { return z > 0.0F; });
+  if (depths.empty()) return 1.2F;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return std::min(1.2F, 0.65F * *middle);
+}
+
+/// Somebody crosses the view from left to right within 2 s, as wide as half the image.
+void walkThrough(RgbdFrame& frame, double seconds, float distance, Random& random) {
   const int width = frame.grey.width();
   const int left = static_cast<int>((0.75 * seconds - 0.5) * width);
   std::normal_distribution<float> noise(0.0F, 0.003F);
@@ -68,7 +81,7 @@ void walkThrough(RgbdFrame& frame, double seconds, Random& random) {
       const double u = 2.0 * (x - left) / width;
       frame.grey(x, y) = toGrey(90.0 + 50.0 * std::sin(40.0 * u) * std::cos(0.05 * y));
       frame.depth(x, y) =
-          static_cast<float>(1.2 + 0.3 * (2.0 * u - 1.0) * (2.0 * u - 1.0)) + noise(random);
+          distance + static_cast<float>(0.3 * (2.0 * u - 1.0) * (2.0 * u - 1.0)) + noise(random);
     }
   }
 }
@@ -126,8 +139,12 @@ Trial kidnap(const FrameSet& set, std::size_t begin, double seconds) {
       std::remove_if(trial.set.truth.begin(), trial.set.truth.end(),
                      [&](const StampedPose& pose) { return pose.stamp >= split; }),
       trial.set.truth.end());
+  // Neither side of the split may be interpolated with the other.
+  if (const auto T = poseAt(set.truth, split)) trial.set.truth.push_back({split, *T});
+  const double after = split + 1e-4;
+  if (const auto T = poseAt(set.truth, after - shift)) trial.set.truth.push_back({after, *T});
   for (const StampedPose& pose : set.truth) {
-    if (pose.stamp + shift < split) continue;
+    if (pose.stamp + shift <= after) continue;
     trial.set.truth.push_back({pose.stamp + shift, pose.pose});
   }
   for (std::size_t i = begin - back; i < set.frames.size(); ++i) {
@@ -155,7 +172,11 @@ std::vector<Trial> makeTrials(const FrameSet& set, std::uint64_t seed) {
   blind("depth zero 2 s", 2.0, dropDepth);
   trials.push_back(disturb(set, "lights off 1.5 s", begin, 1.5, seed, switchLightOff));
   trials.push_back(disturb(set, "exposure doubled", begin, 1.0, seed, doubleExposure));
-  trials.push_back(disturb(set, "person walks through", begin, 2.0, seed, walkThrough));
+  const float distance = passingDistance(*set.frames[begin]);
+  const auto walk = [=](RgbdFrame& frame, double seconds, Random& noise) {
+    walkThrough(frame, seconds, distance, noise);
+  };
+  trials.push_back(disturb(set, "person walks through", begin, 2.0, seed, walk));
   trials.push_back(dropFrames(set, "frames dropped 1 s", begin, 1.0));
   trials.push_back(dropFrames(set, "topic silent 2 s", begin, 2.0));
   trials.push_back(kidnap(set, begin, 0.8 * framePeriod(set) * static_cast<double>(begin)));
