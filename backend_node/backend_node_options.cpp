@@ -15,7 +15,7 @@ void BackendNodeOptions::check() const {
   }
   checkRange("ack_period", ack_period, 0.1, 60.0);
   checkRange("publish_period", publish_period, 0.1, 60.0);
-  checkRange("tf_period", tf_period, 0.01, 1.0);
+  checkRange("tf_period", tf_period, 0.01, 10.0);
   checkRange("cloud_resolution", cloud_resolution, 0.005, 1.0);
   checkRange("max_depth", max_depth, 0.5, 50.0);
   checkRange("max_height", max_height, 0.0, 50.0);

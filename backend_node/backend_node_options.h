@@ -23,7 +23,9 @@ struct BackendNodeOptions {
   std::string tf_robots;
   double ack_period = 1.0;         ///< between acknowledgements when nothing arrives [s], [0.1, 60]
   double publish_period = 1.0;     ///< least time between two maps [s], [0.1, 60]
-  double tf_period = 0.1;          ///< [s], [0.01, 1]
+  /// Between two broadcasts of the map's transforms [s], [0.01, 10]; each is valid until the next.
+  /// They go to every listener of tf, robots behind a poor link as well.
+  double tf_period = 1.0;
   double cloud_resolution = 0.05;  ///< grid of `map_cloud` [m], [0.005, 1]
   double max_depth = 6.0;          ///< tiles beyond are not shown [m], [0.5, 50]
   double max_height = 1.2;         ///< tiles higher above their keyframe are not shown [m], [0, 50]

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::uint32_t kQueue = 2;
 constexpr bool kLatch = true;
+/// How long a transform is valid, in periods: timers are late at times.
+constexpr double kTfValidity = 1.5;
 
 /// The frame of a component: the map, or one of its own as long as the relation is unknown.
 std::string frameOfComponent(const std::string& map_frame, int component) {
@@ -125,7 +127,7 @@ void MapPublisher::broadcastTransforms() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (transforms_.empty()) return;
   // As amcl does: valid until the next one is there, or nobody could look up the present.
-  ros::Time stamp = ros::Time::now() + ros::Duration(options_.tf_period);
+  ros::Time stamp = ros::Time::now() + ros::Duration(kTfValidity * options_.tf_period);
   // While a bag is paused, time stands still; the same stamp again would be refused.
   const bool stands_still = stamp <= last_stamp_ && last_stamp_ - stamp < ros::Duration(1.0);
   if (stands_still) stamp = last_stamp_ + ros::Duration(0, 1000);

@@ -5,7 +5,9 @@
 and a backend that is killed and started again: no keyframe is lost, and without acknowledgements
 some are; and what a metre of map costs on the wire. Two network namespaces stand for the hosts; without the right to make them it is skipped.
 
-PLANECLOUD_SLAM_LINK_CUT: how long the link is cut [s], 60 by default."""
+PLANECLOUD_SLAM_LINK_CUT: how long the link is cut [s], 60 by default.
+PLANECLOUD_SLAM_WIRE_SECONDS: how long the robot drives while bytes are counted, 20 by default; 84
+take it around the block."""
 
 import contextlib
 import math
@@ -19,6 +21,7 @@ import time
 import unittest
 
 CUT = float(os.environ.get("PLANECLOUD_SLAM_LINK_CUT", "60"))
+WIRE_SECONDS = float(os.environ.get("PLANECLOUD_SLAM_WIRE_SECONDS", "20"))
 INSIDE = "PLANECLOUD_SLAM_LINK_INSIDE"  # set within the backend's host: a suffix, or why to skip
 IMAGES = ["/camera/rgb/image_rect_color", "/camera/rgb/camera_info",
           "/camera/depth_registered/image_raw"]
@@ -118,12 +121,16 @@ class Link(unittest.TestCase):
         time.sleep(5)
         return backend
 
-    def play(self, bag):
-        """Images on the robot's host as fast as its camera took them."""
-        subprocess.run([*self.hosts.on_robot(), "rosbag", "play", "--wait-for-subscribers",
-                        "--quiet", bag, "/camera/depth_registered/image_raw:="
-                        "/camera/depth_registered/image_rect", "--topics", *IMAGES],
-                       check=True, timeout=120)
+    def play(self, bag, delay):
+        """Starts to play images on the robot's host as fast as its camera took them; the first one
+        comes after `delay` seconds."""
+        player = subprocess.Popen(
+            [*self.hosts.on_robot(), "rosbag", "play", "--wait-for-subscribers", "--quiet",
+             f"--delay={delay}", bag, "/camera/depth_registered/image_raw:="
+             "/camera/depth_registered/image_rect", "--topics", *IMAGES])
+        self.cleanup.callback(player.wait)
+        self.cleanup.callback(player.kill)
+        return player
 
     def finish(self, frontend, camera):
         """Number of keyframes the frontend made."""
@@ -147,15 +154,16 @@ class Link(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "hallway.bag")
             subprocess.run(["rosrun", "planecloud_slam", "make_hallway_bag", "--output", bag,
-                            "--duration", "20"], check=True, timeout=200)
+                            "--duration", str(WIRE_SECONDS)], check=True)
             backend = self.start_backend()
             frontend = self.start("frontend_node", "frontend", self.hosts.on_robot(), tf_wait=0.0,
                                   drop_frames="false", **{"texture/format": "none"})
             for node in (frontend, backend):
                 node.close()  # or the diagnostics of the frontend would be counted
-            time.sleep(3)  # they have found each other
+            player = self.play(bag, delay=6)
+            time.sleep(5)  # all have found each other
             before = self.hosts.wire_bytes()
-            self.play(bag)
+            self.assertEqual(0, player.wait())
             time.sleep(8)  # the last keyframe comes when the camera is idle
             crossed = self.hosts.wire_bytes() - before
             made = Watch("/frontend").wait_until_steady("keyframes")
