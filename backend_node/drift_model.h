@@ -19,12 +19,14 @@ constexpr double kMetresPerRadian = 0.5;
 /// (translation, rotation) [m^2, rad^2]. The same in all directions, hence in all frames.
 [[nodiscard]] Matrix6d driftCovariance(double path, const DriftOptions& options);
 
-/// Covariance of a measurement. Directions without information get the variance `kUnknownVariance`:
-/// they can disagree by any distance that occurs.
+/// Covariance of a closure. Directions without information get the variance `kUnknownVariance`.
 [[nodiscard]] Matrix6d measurementCovariance(const Matrix6d& information);
 
-/// Stands for "unknown" in covariances [m^2, rad^2].
-constexpr double kUnknownVariance = 1e4;
+/// What a closure says of a direction its planes do not observe [m^2, rad^2]: its keyframes see the
+/// same place, so they lie within sight of each other. 3.5 standard deviations are the 7 m a depth
+/// camera reaches. With more, pieces of one corridor out of each other's sight would be taken for
+/// the same piece as soon as true closures tell where they lie.
+constexpr double kUnknownVariance = 4.0;
 
 /// Squared Mahalanobis distance of `error` (6).
 [[nodiscard]] double squaredMahalanobis(const Vector6d& error, const Matrix6d& covariance);

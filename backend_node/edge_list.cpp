@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/edge_list.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
+
+#include "planecloud_slam/backend_node/relative_pose_cost.h"
 
 namespace planecloud {
 
@@ -13,14 +16,17 @@ const EdgeList::Packed& EdgeList::packed(std::size_t position) const {
 }
 
 EdgeList::End EdgeList::pack(const KeyframeId& id) {
-  const auto known = std::find(robots_.begin(), robots_.end(), id.robot);
-  const auto robot = static_cast<std::uint32_t>(known - robots_.begin());
-  if (known == robots_.end()) robots_.push_back(id.robot);
-  return {id.session, id.number, robot};
+  const auto known = std::find_if(sessions_.begin(), sessions_.end(), [&](const Session& session) {
+    return session.number == id.session && session.robot == id.robot;
+  });
+  const auto position = static_cast<std::uint32_t>(known - sessions_.begin());
+  if (known == sessions_.end()) sessions_.push_back({id.robot, id.session});
+  return {position, id.number};
 }
 
 KeyframeId EdgeList::unpack(const End& end) const {
-  return {robots_[end.robot], end.session, end.number};
+  const Session& session = sessions_[end.session];
+  return {session.robot, session.number, end.number};
 }
 
 GraphEdge EdgeList::operator[](std::size_t position) const {
@@ -33,13 +39,13 @@ GraphEdge EdgeList::operator[](std::size_t position) const {
   result.T_from_to.translation() = Eigen::Map<const Eigen::Vector3d>(edge.translation.data());
   result.T_from_to.linear() =
       Eigen::Map<const Eigen::Quaterniond>(edge.rotation.data()).toRotationMatrix();
+  Matrix6d root = Matrix6d::Zero();
   std::size_t next = 0;
   for (int row = 0; row < 6; ++row) {
-    for (int column = row; column < 6; ++column) {
-      result.information(row, column) = edge.information[next];
-      result.information(column, row) = edge.information[next++];
-    }
+    for (int column = row; column < 6; ++column) root(row, column) = edge.root_information[next++];
   }
+  const Matrix6d information = root.transpose() * root;
+  result.information = 0.5 * (information + information.transpose());
   return result;
 }
 
@@ -52,11 +58,13 @@ void EdgeList::push_back(const GraphEdge& edge) {
   Eigen::Map<Eigen::Vector3d>(result.translation.data()) = edge.T_from_to.translation();
   Eigen::Map<Eigen::Quaterniond>(result.rotation.data()) =
       Eigen::Quaterniond(edge.T_from_to.linear()).normalized();
+  const Matrix6d information = 0.5 * (edge.information + edge.information.transpose());
+  const Matrix6d root =
+      Eigen::HouseholderQR<Matrix6d>(squareRootInformation(information)).matrixQR();
   std::size_t next = 0;
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) {
-      result.information[next++] =
-          0.5 * (edge.information(row, column) + edge.information(column, row));
+      result.root_information[next++] = static_cast<float>(root(row, column));
     }
   }
   append(result);

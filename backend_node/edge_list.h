@@ -14,9 +14,10 @@
 
 namespace planecloud {
 
-/// The edges of a graph, packed to half their size. Copies share all but the last few, so that a
-/// picture of a large map costs little; none sees what becomes of another. Information matrices
-/// come back symmetric, poses but for the rounding of a quaternion.
+/// The edges of a graph, packed to a third of their size. Copies share all but the last few, so
+/// that a picture of a large map costs little; none sees what becomes of another. Poses come back
+/// but for the rounding of a quaternion, information matrices symmetric, without negative
+/// eigenvalues and to single precision, what they do not observe unobserved.
 class EdgeList {
  public:
   class const_iterator {
@@ -65,17 +66,23 @@ class EdgeList {
   static constexpr std::size_t kBlock = 64;
   static constexpr std::size_t kTriangle = 21;  // of a symmetric 6 x 6 matrix
 
+  /// A run of a robot's frontend.
+  struct Session {
+    std::string robot;
+    std::uint64_t number = 0;
+  };
   struct End {
-    std::uint64_t session = 0;
+    std::uint32_t session = 0;  ///< position in `sessions_`
     std::uint32_t number = 0;
-    std::uint32_t robot = 0;  ///< position in `robots_`
   };
   struct Packed {
     End from;
     End to;
     std::array<double, 3> translation{};
     std::array<double, 4> rotation{};  ///< quaternion x y z w
-    std::array<double, kTriangle> information{};
+    /// R, upper triangle row by row, of the information R^T R: rounding R leaves a direction
+    /// without information without, as rounding the information would not.
+    std::array<float, kTriangle> root_information{};
     EdgeKind kind = EdgeKind::kOdometry;
     bool inter_robot = false;
   };
@@ -87,7 +94,7 @@ class EdgeList {
   void append(const Packed& edge);
   void popBack();
 
-  std::vector<std::string> robots_;
+  std::vector<Session> sessions_;
   std::vector<std::shared_ptr<const Block>> blocks_;  ///< of `kBlock` edges each
   Block tail_;                                        ///< fewer than `kBlock`
 };

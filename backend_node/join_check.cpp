@@ -91,12 +91,15 @@ bool JoinCheck::holds(const PoseGraph& graph, const KeyframeRecords& records,
                       PlaneSetCache& plane_sets) const {
   const std::vector<bool> near = nodesNear(graph, closures, options_.join_check_path);
   const std::vector<Pair> pairs = spread(overlappingPairs(graph, records, join, near));
+  const double limit = options_.join_seen_through * static_cast<double>(pairs.size());
   double sum = 0.0;
   for (const Pair& pair : pairs) {
+    // Shares are no less than zero: once over the limit, no other pair can mend it.
+    if (sum > limit) return false;
     sum += seenThrough(plane_sets.get(records, pair.target), plane_sets.get(records, pair.source),
                        pair.T_target_source);
   }
-  return sum <= options_.join_seen_through * static_cast<double>(pairs.size());
+  return sum <= limit;
 }
 
 }  // namespace planecloud

@@ -141,6 +141,7 @@ void KeyframeMap::level(int node, const PlaneCloud& planes) {
 std::shared_ptr<const MapSnapshot> KeyframeMap::snapshot(std::uint64_t revision) const {
   auto snapshot = std::make_shared<MapSnapshot>();
   snapshot->revision = revision;
+  snapshot->nodes.reserve(records_.size());
   for (const auto& [id, node] : graph_.numbers()) {
     snapshot->nodes.push_back({records_[static_cast<std::size_t>(node)].keyframe, graph_.pose(node),
                                graph_.component(node)});

@@ -17,6 +17,10 @@ namespace {
 /// A direction counts as observed from this information on [1/m^2, 1/rad^2]: 0.1 m, 0.1 rad.
 constexpr double kObserved = 100.0;
 
+/// Of local optimisations, see PoseGraphProblem: the last decimals are left to the optimisation of
+/// the whole, which moves what lies around the window as well.
+constexpr double kLocalTolerance = 1e-4;
+
 bool observesEverything(const Matrix6d& information) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(information, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().minCoeff() >= kObserved;
@@ -137,6 +141,7 @@ void PoseGraph::solve(OptimisationSummary& summary) {
 OptimisationSummary PoseGraph::optimizeAround(const std::vector<int>& seeds) {
   OptimisationSummary summary;
   PoseGraphProblem problem;
+  problem.tolerance = kLocalTolerance;
   const std::vector<int> free = window(seeds);
   std::vector<int> position(nodes_.size(), -1);
   const auto place = [&](int node) {

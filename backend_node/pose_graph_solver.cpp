@@ -143,12 +143,12 @@ Matrix6d effectiveInformation(const GraphEdge& edge, const PoseGraphOptions& opt
                         options.odometry_rotation_floor);
 }
 
-ceres::Solver::Options solverOptions(const PoseGraphOptions& options) {
+ceres::Solver::Options solverOptions(const PoseGraphOptions& options, double tolerance) {
   ceres::Solver::Options result;
   result.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   result.max_num_iterations = options.max_iterations;
   result.num_threads = options.threads;
-  result.function_tolerance = 1e-8;
+  result.function_tolerance = tolerance;
   // Ceres' own damping is so weak that rounding errors drive the poses far along directions without
   // information. All other columns are scaled to about one, so this leaves them alone.
   result.min_lm_diagonal = 1.0;
@@ -183,7 +183,7 @@ void solvePoseGraph(const PoseGraphOptions& options, PoseGraphProblem& problem,
                                    blocks[static_cast<std::size_t>(edge.to)].data());
   }
   ceres::Solver::Summary report;
-  ceres::Solve(solverOptions(options), &ceres_problem, &report);
+  ceres::Solve(solverOptions(options, problem.tolerance), &ceres_problem, &report);
   summary.iterations += static_cast<int>(report.iterations.size());
   summary.initial_cost = report.initial_cost;
   summary.final_cost = report.final_cost;

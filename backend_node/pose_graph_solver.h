@@ -19,6 +19,7 @@ struct PoseGraphProblem {
   std::vector<Eigen::Isometry3d> poses;
   std::vector<bool> fixed;  ///< same order
   std::vector<Edge> edges;
+  double tolerance = 1e-8;  ///< relative decrease of the cost that is not worth another iteration
 };
 
 /// Minimises the robust sum of squared RelativePoseCost residuals over `problem.poses` (Ceres,

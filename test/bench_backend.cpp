@@ -11,6 +11,7 @@
 // Usage: bench_backend [KEYFRAMES [ROBOTS]] [key=value...], e.g. 10000 20 graph/local_window=200
 #include <malloc.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -78,11 +79,27 @@ class Trial {
   void insert(Keyframe keyframe) {
     bytes_ += static_cast<double>(keyframe.planes.bytes.size() + keyframe.descriptor.size());
     const double start = threadTime();
-    backend_.insert(std::move(keyframe));
+    const InsertionResult result = backend_.insert(std::move(keyframe));
     snapshot_ = backend_.snapshot();
     double time = threadTime() - start;
+    for (const GraphEdge& closure : result.closures) denounce(closure);
     if (backend_.optimisationDue()) time += optimiseWhole();
     insertions_.push_back(1e3 * time);
+  }
+
+  /// Names a closure on stderr when it is false, whether it will be found false later or not.
+  void denounce(const GraphEdge& closure) const {
+    Truth truth;
+    for (const KeyframeId& id : {closure.from, closure.to}) truth.emplace(id, truePose(id));
+    if (!isFalse(closure, truth)) return;
+    const Vector6d error = closureError(closure, truth);
+    std::fprintf(stderr, "false closure: %s to %s, off by %.2f m and %.1f degrees\n",
+                 toString(closure.from).c_str(), toString(closure.to).c_str(),
+                 error.head<3>().norm(), error.tail<3>().norm() * 180.0 / M_PI);
+  }
+
+  [[nodiscard]] const Eigen::Isometry3d& truePose(const KeyframeId& id) const {
+    return robots_[static_cast<std::size_t>(std::stoi(id.robot.substr(5)) - 1)].truth[id.number];
   }
 
   /// Returns what of it the owner of the map has to do itself [s].
@@ -117,9 +134,7 @@ class Trial {
   [[nodiscard]] Truth truth() const {
     Truth truth;
     for (const MapSnapshot::Node& node : snapshot_->nodes) {
-      const KeyframeId& id = node.keyframe->id;
-      const auto robot = static_cast<std::size_t>(std::stoi(id.robot.substr(5)) - 1);
-      truth.emplace(id, robots_[robot].truth[id.number]);
+      truth.emplace(node.keyframe->id, truePose(node.keyframe->id));
     }
     return truth;
   }

@@ -26,18 +26,27 @@ inline double largestError(const MapSnapshot& map, const Truth& truth) {
   return largest;
 }
 
-/// Closures off by more than 0.1 m or 3 degrees in the directions they observe.
+/// By how much a closure is wrong, at its end `to`: translation [m], rotation [rad].
+inline Vector6d closureError(const GraphEdge& closure, const Truth& truth) {
+  const Eigen::Isometry3d T = truth.at(closure.from).inverse() * truth.at(closure.to);
+  return logSe3(closure.T_from_to.inverse() * T);
+}
+
+/// Whether a closure is off by more than 0.1 m or 3 degrees in the directions it observes.
+inline bool isFalse(const GraphEdge& closure, const Truth& truth) {
+  const Vector6d error = closureError(closure, truth);
+  const bool blind = closure.information.trace() == 0.0;
+  const double weighted = error.dot(closure.information * error);
+  const bool off = error.head<3>().norm() > 0.1 || error.tail<3>().norm() > 0.052;
+  // Off, and not only along what the closure says nothing about.
+  return blind || (off && weighted > 30.0);
+}
+
+/// How many closures of the map are false.
 inline int falseClosures(const MapSnapshot& map, const Truth& truth) {
   int count = 0;
   for (const GraphEdge& edge : map.edges) {
-    if (edge.kind != EdgeKind::kClosure) continue;
-    const Eigen::Isometry3d T = truth.at(edge.from).inverse() * truth.at(edge.to);
-    const Vector6d error = logSe3(edge.T_from_to.inverse() * T);
-    const bool blind = edge.information.trace() == 0.0;
-    const double weighted = error.dot(edge.information * error);
-    const bool off = error.head<3>().norm() > 0.1 || error.tail<3>().norm() > 0.052;
-    // Off, and not only along what the closure says nothing about.
-    if (blind || (off && weighted > 30.0)) ++count;
+    if (edge.kind == EdgeKind::kClosure && isFalse(edge, truth)) ++count;
   }
   return count;
 }

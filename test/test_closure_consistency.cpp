@@ -124,6 +124,23 @@ TEST_F(ClosureConsistencyTest, DoesNotJoinAlongADirectionNobodyObserves) {
   EXPECT_TRUE(offerTrue(9, 10).join.has_value());
 }
 
+TEST_F(ClosureConsistencyTest, LeavesOutPiecesOfACorridorOutOfSightOfEachOther) {
+  const auto corridor = [](int i, double x) {
+    GraphEdge closure = closureBetween(idOf("a", i), idOf("b", i), along(x, 1.0));
+    closure.information.row(0).setZero();
+    closure.information.col(0).setZero();
+    return closure;
+  };
+  // Planes say nothing against either: only the first is near enough to see what its partner saw.
+  EXPECT_TRUE(offer(corridor(8, 1.0)).closures.empty());
+  EXPECT_TRUE(offer(corridor(6, 14.0)).closures.empty());
+  EXPECT_TRUE(offer(corridor(7, 14.0)).closures.empty());
+  const ClosureAdmission admission = offerTrue(0, 3);
+  ASSERT_TRUE(admission.join.has_value());
+  EXPECT_EQ(admission.closures.size(), 4u);
+  EXPECT_EQ(admission.rejected, 2u);
+}
+
 TEST_F(ClosureConsistencyTest, LetsTheJudgeForbidAJoin) {
   EXPECT_TRUE(offerTrue(0, 6, false).closures.empty());
   EXPECT_TRUE(offerTrue(6, 7, true).join.has_value());

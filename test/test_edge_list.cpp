@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planecloud_slam/backend_node/edge_list.h"
+#include "planecloud_slam/backend_node/relative_pose_cost.h"
 
 namespace planecloud {
 namespace {
@@ -75,7 +76,30 @@ TEST(EdgeList, GivesBackWhatItGot) {
   EXPECT_EQ(back.to, edge.to);
   EXPECT_EQ(back.inter_robot, edge.inter_robot);
   EXPECT_TRUE(back.T_from_to.isApprox(edge.T_from_to, 1e-15));
-  EXPECT_EQ(back.information, edge.information);
+  EXPECT_TRUE(back.information.isApprox(edge.information, 1e-6)) << "single precision";
+}
+
+TEST(EdgeList, LeavesUnobservedWhatIsUnobserved) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss;
+  for (int trial = 0; trial < 20; ++trial) {
+    Matrix6d roots;
+    for (int i = 0; i < 36; ++i) roots(i) = 100.0 * gauss(random);
+    Vector6d unobserved;
+    for (int i = 0; i < 6; ++i) unobserved(i) = gauss(random);
+    unobserved.normalize();
+    roots -= roots * unobserved * unobserved.transpose();
+    GraphEdge edge;
+    edge.information = roots.transpose() * roots;
+    EdgeList list;
+    list.push_back(edge);
+    const GraphEdge back = list[0];
+    EXPECT_TRUE(back.information.isApprox(edge.information, 1e-6));
+    EXPECT_EQ(back.information, back.information.transpose());
+    // A float of the matrix itself would claim to know this direction to some 30 m.
+    EXPECT_LT(unobserved.dot(back.information * unobserved), 1e-6) << "[1/m^2]";
+    EXPECT_LT((squareRootInformation(back.information) * unobserved).norm(), 1e-2);
+  }
 }
 
 }  // namespace
