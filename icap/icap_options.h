@@ -70,10 +70,10 @@ void fromString(const std::string& text, IcapForm& form);
 /// Iterative Closest Algebraic Plane (paper sec. 3.4). Keys: `icap/...`.
 struct IcapOptions {
   IcapForm form = IcapForm::kRobust;
-  int max_iterations = 30;   ///< all stages together, [1, 200]
-  int min_matches = 12;      ///< fewer: too_few_planes, [3, 10000]
-  bool restarts = true;      ///< also from other turns and places where the views disagree
-  int coarse_patches = 200;  ///< source pieces used in the first stage, [16, 100000]
+  int max_iterations = 30;        ///< all stages together, [1, 200]
+  int min_matches = 12;           ///< fewer: too_few_planes, [3, 10000]
+  bool restarts = true;           ///< also from other turns and places where the views disagree
+  int coarse_patches = 200;       ///< source pieces used in the first stage, [16, 100000]
   double initial_distance = 1.2;  ///< matching gate at the start [m], (0, 5]
   double final_distance = 0.08;   ///< matching gate at the end [m], (0, 5]
   /// Makes a difference of unit normals a length when patches are matched, in either stage [m],
