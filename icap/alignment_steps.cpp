@@ -11,7 +11,7 @@
 namespace planecloud {
 namespace {
 
-constexpr double kGateShrink = 0.7;       // of the gates from one iteration to the next
+constexpr double kGateShrink = 0.6;       // of the gates from one iteration to the next
 constexpr double kSettledStep = 2e-4;     // norm of a twist that counts as standing still [m, rad]
 constexpr double kScoutedStep = 1e-3;     // likewise while a sample leads the way
 constexpr int kPolishingIterations = 10;  // of those there are, at least

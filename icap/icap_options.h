@@ -16,7 +16,7 @@ struct PlaneSetOptions {
   int min_tile = 3;             ///< tiles with a smaller side are left out [px], [1, 64]
   double max_depth = 6.0;       ///< tiles beyond are left out [m], [0.5, 50]
   double min_incidence = 0.12;  ///< least cosine between normal and ray [-], [0, 0.9]
-  int coarse_kept = 512;        ///< pieces of the target in the first stage, [16, 100000]
+  int coarse_kept = 320;        ///< pieces of the target in the first stage, [16, 100000]
   int fine_patches = 1000;      ///< pieces used in the second stage, [16, 100000]
   /// Standard deviation of a pixel's depth divided by the depth squared [1/m], [1e-5, 0.1].
   double depth_noise = 1.6e-3;
