@@ -16,11 +16,11 @@ constexpr double kSettledStep = 2e-4;     // norm of a twist that counts as stan
 constexpr double kScoutedStep = 1e-3;     // likewise while a sample leads the way
 constexpr int kPolishingIterations = 10;  // of those there are, at least
 constexpr double kFineDistance = 0.12;    // gate at which the small pieces take over [m]
-// Of the noise's curvature: the directions the iterations move in. Along weaker ones the errors of
-// the normals push as hard as the planes do, and an answer that follows drifts away with its
-// matches, decimetres in a few steps; how far it is along those the edges tell (slideToSupport).
+// Of the noise's curvature: the directions coarse iterations move in, if not fewer. Fine ones move
+// in those that count as observed: along weaker ones the errors of the normals push as hard as the
+// planes do, and an answer that follows drifts away with its matches, decimetres in a few steps;
+// how far it is along those the edges tell (slideToSupport).
 constexpr double kFollowedByCoarse = 1.0;
-constexpr double kFollowedByFine = 2.0;
 constexpr int kRestoringIterations = 4;
 constexpr int kSettlingIterations = 2;
 // Pieces that find the way with the fine gates; all of them have their say about the end of it.
@@ -32,8 +32,8 @@ struct Schedule {
   double kernel_width = 0.0;
   bool coarse = false;
   std::size_t count = std::numeric_limits<std::size_t>::max();  ///< of source pieces
-  double followed = kFollowedByFine;
-  bool last = false;  ///< the gates are at their final values
+  double followed = 0.0;  ///< of the noise's curvature: directions that move
+  bool last = false;      ///< the gates are at their final values
 };
 
 Schedule scheduleOf(int iteration, const IcapOptions& options) {
@@ -44,6 +44,7 @@ Schedule scheduleOf(int iteration, const IcapOptions& options) {
   schedule.last = schedule.gates.distance <= options.final_distance &&
                   schedule.gates.angle <= options.final_angle;
   schedule.gates.normal_length = options.fine_normal_length;
+  schedule.followed = options.observability;
   schedule.kernel_width = options.kernel_width * schedule.gates.distance / options.final_distance;
   return schedule;
 }
@@ -81,7 +82,7 @@ void runCoarse(const PlaneSetPair& pair, std::size_t pieces, const IcapOptions& 
     if (schedule.gates.distance <= kFineDistance) break;
     schedule.coarse = true;
     schedule.gates.normal_length = options.coarse_normal_length;
-    schedule.followed = kFollowedByCoarse;
+    schedule.followed = std::min(kFollowedByCoarse, options.observability);
     schedule.count = pieces;
     iterate(pair, schedule, options, progress);
     if (!progress.enough) break;
@@ -121,8 +122,7 @@ void settle(const PlaneSetPair& pair, const IcapOptions& options, AlignmentProgr
 
 void restoreUnobserved(const PlaneSetPair& pair, const Eigen::Isometry3d& T_target_source_guess,
                        const IcapOptions& options, AlignmentProgress& progress) {
-  Schedule schedule = finalSchedule(options);
-  schedule.followed = options.observability;
+  const Schedule schedule = finalSchedule(options);
   for (int i = 0; i < kRestoringIterations && progress.enough; ++i) {
     const auto& dark = progress.observability.unobserved;
     if (dark.cols() == 0) break;

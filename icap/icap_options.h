@@ -87,7 +87,7 @@ struct IcapOptions {
   double kernel_width = 4.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
   /// A direction counts as observed, and gets information, when its eigenvalue is this many times
   /// what the noise of the normals alone would make [-], [0, 1000]. Noise alone gives 1.
-  double observability = 1.0;
+  double observability = 2.0;
   double max_correction = 1.5;  ///< a longer way from the guess is divergence [m], (0, 100]
   double max_rotation = 0.8;    ///< a larger turn from the guess is divergence [rad], (0, 3.2]
   /// Errors that do not average out (sensor distortion): the standard deviation no observed
