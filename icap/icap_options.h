@@ -16,7 +16,7 @@ struct PlaneSetOptions {
   int min_tile = 3;             ///< tiles with a smaller side are left out [px], [1, 64]
   double max_depth = 6.0;       ///< tiles beyond are left out [m], [0.5, 50]
   double min_incidence = 0.12;  ///< least cosine between normal and ray [-], [0, 0.9]
-  int coarse_kept = 512;        ///< pieces of the target in the first stage, [16, 100000]
+  int coarse_kept = 320;        ///< pieces of the target in the first stage, [16, 100000]
   int fine_patches = 1000;      ///< pieces used in the second stage, [16, 100000]
   /// Standard deviation of a pixel's depth divided by the depth squared [1/m], [1e-5, 0.1].
   double depth_noise = 1.6e-3;
@@ -70,10 +70,10 @@ void fromString(const std::string& text, IcapForm& form);
 /// Iterative Closest Algebraic Plane (paper sec. 3.4). Keys: `icap/...`.
 struct IcapOptions {
   IcapForm form = IcapForm::kRobust;
-  int max_iterations = 30;   ///< all stages together, [1, 200]
-  int min_matches = 12;      ///< fewer: too_few_planes, [3, 10000]
-  bool restarts = true;      ///< also turned either way where the views disagree from the guess
-  int coarse_patches = 200;  ///< source pieces used in the first stage, [16, 100000]
+  int max_iterations = 30;        ///< all stages together, [1, 200]
+  int min_matches = 12;           ///< fewer: too_few_planes, [3, 10000]
+  bool restarts = true;           ///< also from other turns and places where the views disagree
+  int coarse_patches = 200;       ///< source pieces used in the first stage, [16, 100000]
   double initial_distance = 1.2;  ///< matching gate at the start [m], (0, 5]
   double final_distance = 0.08;   ///< matching gate at the end [m], (0, 5]
   /// Makes a difference of unit normals a length when patches are matched, in either stage [m],
@@ -87,7 +87,7 @@ struct IcapOptions {
   double kernel_width = 4.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
   /// A direction counts as observed, and gets information, when its eigenvalue is this many times
   /// what the noise of the normals alone would make [-], [0, 1000]. Noise alone gives 1.
-  double observability = 1.0;
+  double observability = 2.0;
   double max_correction = 1.5;  ///< a longer way from the guess is divergence [m], (0, 100]
   double max_rotation = 0.8;    ///< a larger turn from the guess is divergence [rad], (0, 3.2]
   /// Errors that do not average out (sensor distortion): the standard deviation no observed

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kLevels = 3;
-constexpr int kCell = 4;  // side of a cell of the pixel-to-tile map [px]
+constexpr int kCell = 1 << TileView::kCellShift;  // side of a cell of the view [px]
 constexpr int kNoLimit = std::numeric_limits<int>::max();
 // Smaller tiles know too little of their normals to find a partner by it [px].
 constexpr int kLeastCoarseTile = 8;
@@ -160,14 +160,32 @@ Image<std::int32_t> mapCells(const std::vector<PlanePatch>& patches, const Camer
   return cells;
 }
 
+PatchColumns columnsOf(const std::vector<PlanePatch>& patches) {
+  PatchColumns columns;
+  for (const PlanePatch& patch : patches) {
+    columns.add(patch.centroid, patch.normal, patch.radius);
+  }
+  columns.pad();
+  return columns;
+}
+
+TileView viewOf(const std::vector<PlanePatch>& tiles, const CameraIntrinsics& camera) {
+  TileView view;
+  view.camera = camera;
+  view.distorted = camera.hasDistortion();
+  view.cells = mapCells(tiles, camera);
+  for (const PlanePatch& tile : tiles) view.add(tile.normal, tile.d);
+  view.add(Eigen::Vector3d::UnitZ(), 0.0);
+  return view;
+}
+
 }  // namespace
 
 struct PlaneSet::Contents {
-  CameraIntrinsics camera;
-  bool distorted = false;
   std::array<std::vector<PlanePatch>, kLevels> patches;
   PatchColumns coarse_columns;
-  Image<std::int32_t> cells;
+  PatchColumns fine_columns;
+  TileView view;
 };
 
 PlaneSet::PlaneSet() : contents_(std::make_shared<const Contents>()) {}
@@ -176,8 +194,6 @@ PlaneSet::PlaneSet(const PlaneCloud& cloud, const PlaneSetOptions& options) {
   options.check();
   cloud.camera.check();
   const std::shared_ptr<Contents> contents = std::make_shared<Contents>();
-  contents->camera = cloud.camera;
-  contents->distorted = cloud.camera.hasDistortion();
   const PatchMaker maker(cloud.camera, options);
   const std::array<PieceLimits, kLevels> limits{
       {{std::max(options.min_tile, kLeastCoarseTile), options.coarse_tile, options.coarse_kept},
@@ -186,32 +202,34 @@ PlaneSet::PlaneSet(const PlaneCloud& cloud, const PlaneSetOptions& options) {
   for (std::size_t level = 0; level < kLevels; ++level) {
     maker.sample(cloud.tiles, limits[level], contents->patches[level]);
   }
-  for (const PlanePatch& patch : contents->patches[indexOf(Level::kCoarse)]) {
-    contents->coarse_columns.add(patch.centroid, patch.normal, patch.radius);
-  }
-  contents->coarse_columns.pad();
-  contents->cells = mapCells(contents->patches[indexOf(Level::kWhole)], cloud.camera);
+  contents->coarse_columns = columnsOf(contents->patches[indexOf(Level::kCoarse)]);
+  contents->fine_columns = columnsOf(contents->patches[indexOf(Level::kFine)]);
+  contents->view = viewOf(contents->patches[indexOf(Level::kWhole)], cloud.camera);
   contents_ = contents;
 }
 
-const CameraIntrinsics& PlaneSet::camera() const { return contents_->camera; }
+const CameraIntrinsics& PlaneSet::camera() const { return contents_->view.camera; }
 
 const std::vector<PlanePatch>& PlaneSet::patches(Level level) const {
   return contents_->patches[indexOf(level)];
 }
 
 Eigen::Vector2d PlaneSet::project(const Eigen::Vector3d& point) const {
-  const CameraIntrinsics& k = contents_->camera;
-  if (contents_->distorted) return projectPoint(k, point);
+  const CameraIntrinsics& k = camera();
+  if (contents_->view.distorted) return projectPoint(k, point);
   return {k.fx * (point.x() / point.z()) + k.cx, k.fy * (point.y() / point.z()) + k.cy};
 }
 
 int PlaneSet::patchAt(int x, int y) const {
-  const CameraIntrinsics& k = contents_->camera;
+  const CameraIntrinsics& k = camera();
   if (x < 0 || y < 0 || x >= k.width || y >= k.height) return -1;
-  return contents_->cells(x / kCell, y / kCell);
+  return contents_->view.cells(x / kCell, y / kCell);
 }
 
 const PatchColumns& PlaneSet::coarseColumns() const { return contents_->coarse_columns; }
+
+const PatchColumns& PlaneSet::fineColumns() const { return contents_->fine_columns; }
+
+const TileView& PlaneSet::view() const { return contents_->view; }
 
 }  // namespace planecloud

@@ -9,6 +9,7 @@
 
 #include "planecloud_slam/icap/icap_options.h"
 #include "planecloud_slam/icap/patch_search.h"
+#include "planecloud_slam/icap/view_search.h"
 #include "planecloud_slam/plane_fit/camera.h"
 #include "planecloud_slam/plane_fit/image_view.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
@@ -58,6 +59,12 @@ class PlaneSet {
 
   /// `patches(Level::kCoarse)` laid out for nearestPatch, in their order.
   [[nodiscard]] const PatchColumns& coarseColumns() const;
+
+  /// `patches(Level::kFine)` laid out to be looked up in another set's view, in their order.
+  [[nodiscard]] const PatchColumns& fineColumns() const;
+
+  /// `patches(Level::kWhole)` as the camera sees them, in their order.
+  [[nodiscard]] const TileView& view() const;
 
  private:
   struct Contents;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace planecloud {
@@ -15,7 +16,6 @@ double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 
 /// What every piece is judged by.
 struct Judge {
-  const PlaneSet& target;
   const std::vector<PlanePatch>& tiles;
   VisibilityOptions options;
   double least_cosine;  ///< of normals that count as the same whatever their noise
@@ -29,38 +29,26 @@ bool sameNormal(const PlanePatch& a, const PlanePatch& b, double cosine, const J
   return cosine > std::cos(std::min(judge.options.normal_tolerance + noise, kRightAngle));
 }
 
-/// Files a source piece, moved into the target's frame, under what the target says of it.
-void file(const Judge& judge, const PlanePatch& piece, const Eigen::Isometry3d& T_target_source,
+/// Files a source piece under what the target says of it, entry `i` of `seen`.
+void file(const Judge& judge, const PlanePatch& piece, const SeenTiles& seen, std::size_t i,
           VisibilityReport& report) {
   const double weight = piece.rect.area();
   report.total += weight;
-  const Eigen::Vector3d centroid = T_target_source * piece.centroid;
-  const Eigen::Vector3d normal = T_target_source.linear() * piece.normal;
-  if (centroid.z() <= 0.0 || normal.dot(centroid) >= 0.0) return;
-  const Eigen::Vector2d pixel = judge.target.project(centroid);
-  const CameraIntrinsics& k = judge.target.camera();
-  if (!(pixel.x() > -0.5 && pixel.y() > -0.5 && pixel.x() < k.width - 0.5 &&
-        pixel.y() < k.height - 0.5)) {
-    return;
-  }
+  if (seen.tiles[i] == SeenTiles::kNotInView) return;
   report.in_view += weight;
-  const int tile =
-      judge.target.patchAt(static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
-  if (tile < 0) {
+  if (seen.tiles[i] == SeenTiles::kNoTile) {
     report.unknown += weight;
     return;
   }
-  const PlanePatch& seen = judge.tiles[static_cast<std::size_t>(tile)];
-  const double z = centroid.z();
-  // Where the piece's own ray meets the target's plane; a grazing plane is met anywhere.
-  const double slope = -seen.normal.dot(centroid) / z;
-  const double seen_z = slope > 0.0 ? seen.d / slope : z;
+  const double z = seen.depth[i];
+  const double behind = z - static_cast<double>(seen.seen_depth[i]);
   const double tolerance = judge.options.depth_tolerance + judge.options.depth_tolerance_z2 * z * z;
-  if (z - seen_z > tolerance) {
+  if (behind > tolerance) {
     report.occluded += weight;
-  } else if (seen_z - z > tolerance) {
+  } else if (-behind > tolerance) {
     report.seen_through += weight;
-  } else if (sameNormal(piece, seen, normal.dot(seen.normal), judge)) {
+  } else if (sameNormal(piece, judge.tiles[static_cast<std::size_t>(seen.tiles[i])], seen.cosine[i],
+                        judge)) {
     report.agreeing += weight;
   } else {
     report.differing += weight;
@@ -83,12 +71,15 @@ VisibilityReport checkVisibility(const PlaneSet& target, const PlaneSet& source,
                                  const Eigen::Isometry3d& T_target_source,
                                  const VisibilityOptions& options) {
   options.check();
-  const Judge judge{target, target.patches(PlaneSet::Level::kWhole), options,
+  const Judge judge{target.patches(PlaneSet::Level::kWhole), options,
                     std::cos(std::min(options.normal_tolerance, kRightAngle))};
+  const std::vector<PlanePatch>& pieces = source.patches(PlaneSet::Level::kFine);
+  const SeenTiles seen =
+      target.empty()
+          ? SeenTiles(pieces.size())
+          : lookUpTiles(target.view(), {source.fineColumns(), pieces.size(), T_target_source});
   VisibilityReport report;
-  for (const PlanePatch& piece : source.patches(PlaneSet::Level::kFine)) {
-    file(judge, piece, T_target_source, report);
-  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) file(judge, pieces[i], seen, i, report);
   return report;
 }
 

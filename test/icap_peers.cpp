@@ -5,6 +5,7 @@
 #include <pcl/features/normal_3d.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/point_types.h>
+#include <pcl/registration/correspondence_rejection_surface_normal.h>
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
 
@@ -22,8 +23,14 @@ constexpr float kPointToPlaneVoxel = 0.03F;  // [m]
 constexpr float kGeneralisedVoxel = 0.04F;   // [m]
 constexpr float kFarthestDepth = 6.0F;       // as ICaP [m]
 constexpr int kNeighbours = 20;              // of normals and covariances
-constexpr double kLongestMatch = 0.3;        // [m]
-constexpr int kMostIterations = 50;
+// Longest matches one after the other [m]: with a single length ICP either takes along what only
+// one view sees, or never gets near. On 17 pairs of each set: 31 and 5 % in one stage of 30 cm
+// without regard to normals, 58 and 5 % with, 71 and 29 % in these four.
+constexpr double kPointToPlaneMatches[] = {0.5, 0.2, 0.1, 0.05};
+constexpr int kPointToPlaneIterations = 30;  // a stage
+constexpr double kWidestAngle = 0.785;       // between the normals of a match [rad]
+constexpr double kGeneralisedMatches[] = {0.3};
+constexpr int kGeneralisedIterations = 50;
 
 /// PCL keeps the computation of covariances to itself, which forbids timing it apart.
 class Gicp : public pcl::GeneralizedIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> {
@@ -72,14 +79,19 @@ NormalCloud::Ptr withNormals(const Cloud::Ptr& cloud) {
   return result;
 }
 
-template <typename Registration, typename Points>
-Eigen::Isometry3d run(Registration& registration, const Eigen::Isometry3d& T_target_source_guess) {
-  registration.setMaxCorrespondenceDistance(kLongestMatch);
-  registration.setMaximumIterations(kMostIterations);
-  Points aligned;
-  registration.align(aligned, T_target_source_guess.matrix().cast<float>());
+/// Aligns by matches of at most these lengths, one after the other.
+template <typename Points, typename Registration, typename Lengths>
+Eigen::Isometry3d run(Registration& registration, const Lengths& longest_matches,
+                      const Eigen::Isometry3d& T_target_source_guess) {
+  Eigen::Matrix4f found = T_target_source_guess.matrix().cast<float>();
+  for (const double longest : longest_matches) {
+    registration.setMaxCorrespondenceDistance(longest);
+    Points aligned;
+    registration.align(aligned, found);
+    found = registration.getFinalTransformation();
+  }
+  const Eigen::Matrix4d T = found.cast<double>();
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  const Eigen::Matrix4d T = registration.getFinalTransformation().template cast<double>();
   result.linear() = Eigen::Quaterniond(T.topLeftCorner<3, 3>()).normalized().toRotationMatrix();
   result.translation() = T.topRightCorner<3, 1>();
   return result;
@@ -120,7 +132,11 @@ Eigen::Isometry3d alignPointToPlane(const DenseView& target, const DenseView& so
   registration.setInputSource(source.clouds().with_normals);
   registration.setInputTarget(target.clouds().with_normals);
   registration.setTransformationEpsilon(1e-8);
-  return run<decltype(registration), NormalCloud>(registration, T_target_source_guess);
+  registration.setMaximumIterations(kPointToPlaneIterations);
+  const auto rejector = std::make_shared<pcl::registration::CorrespondenceRejectorSurfaceNormal>();
+  rejector->setThreshold(std::cos(kWidestAngle));
+  registration.addCorrespondenceRejector(rejector);
+  return run<NormalCloud>(registration, kPointToPlaneMatches, T_target_source_guess);
 }
 
 Eigen::Isometry3d alignGeneralised(const DenseView& target, const DenseView& source,
@@ -130,7 +146,8 @@ Eigen::Isometry3d alignGeneralised(const DenseView& target, const DenseView& sou
   registration.setInputTarget(target.clouds().points);
   registration.setSourceCovariances(source.clouds().covariances);
   registration.setTargetCovariances(target.clouds().covariances);
-  return run<Gicp, Cloud>(registration, T_target_source_guess);
+  registration.setMaximumIterations(kGeneralisedIterations);
+  return run<Cloud>(registration, kGeneralisedMatches, T_target_source_guess);
 }
 
 }  // namespace planecloud
