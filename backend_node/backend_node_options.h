@@ -21,8 +21,8 @@ struct BackendNodeOptions {
   /// Robots whose odometry frame it hangs on the map by tf, separated by spaces; empty: all. Where
   /// every robot has a backend of its own, each names its own robot: a frame has one parent.
   std::string tf_robots;
-  double ack_period = 1.0;         ///< between acknowledgements when nothing arrives [s], [0.1, 60]
-  double publish_period = 1.0;     ///< least time between two maps [s], [0.1, 60]
+  double ack_period = 1.0;      ///< between acknowledgements when nothing arrives [s], [0.1, 60]
+  double publish_period = 1.0;  ///< least time between two maps [s], [0.1, 60]
   /// Between two broadcasts of the map's transforms [s], [0.01, 10]; each is valid until the next.
   /// They go to every listener of tf, robots behind a poor link as well.
   double tf_period = 1.0;

@@ -4,18 +4,12 @@
 
 namespace planecloud {
 
-void DynamicCovarianceScaling::Evaluate(double square, double rho[3]) const {
-  if (square <= square_) {
-    rho[0] = square;
-    rho[1] = 1.0;
-    rho[2] = 0.0;
-    return;
-  }
-  const double sum = square_ + square;
-  const double scale = 2.0 * square_ / sum;
-  rho[0] = square_ * (3.0 * square - square_) / sum;
-  rho[1] = scale * scale;
-  rho[2] = -2.0 * scale * scale / sum;
+KernelValue dynamicCovarianceScaling(double square, double width) {
+  const double limit = width * width;
+  if (square <= limit) return {square, 1.0, 0.0};
+  const double sum = limit + square;
+  const double scale = 2.0 * limit / sum;
+  return {limit * (3.0 * square - limit) / sum, scale * scale, -2.0 * scale * scale / sum};
 }
 
 }  // namespace planecloud

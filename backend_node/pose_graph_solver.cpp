@@ -122,6 +122,22 @@ class EdgeCost final : public ceres::SizedCostFunction<6, kPoseSize, kPoseSize> 
   RelativePoseCost cost_;
 };
 
+/// See dynamicCovarianceScaling.
+class DcsLoss : public ceres::LossFunction {
+ public:
+  explicit DcsLoss(double width) : width_(width) {}
+
+  void Evaluate(double square, double rho[3]) const override {
+    const KernelValue kernel = dynamicCovarianceScaling(square, width_);
+    rho[0] = kernel.value;
+    rho[1] = kernel.slope;
+    rho[2] = kernel.curvature;
+  }
+
+ private:
+  double width_;
+};
+
 std::unique_ptr<ceres::LossFunction> makeKernel(const PoseGraphOptions& options) {
   switch (options.kernel) {
     case RobustKernel::kNone:
@@ -131,7 +147,7 @@ std::unique_ptr<ceres::LossFunction> makeKernel(const PoseGraphOptions& options)
     case RobustKernel::kCauchy:
       return std::make_unique<ceres::CauchyLoss>(options.kernel_width);
     case RobustKernel::kDcs:
-      return std::make_unique<DynamicCovarianceScaling>(options.kernel_width);
+      return std::make_unique<DcsLoss>(options.kernel_width);
   }
   return nullptr;
 }
