@@ -11,8 +11,8 @@
 namespace planecloud {
 namespace {
 
-// An answer with less support is looked for elsewhere, too. Wrong ones on real views stay below
-// 0.85, right ones are at 0.9 to 1.
+// An answer with less support is looked for elsewhere, too: right ones are at 0.9 to 1, few of the
+// wrong ones reach that.
 constexpr double kSureSupport = 0.9;
 constexpr double kScoutedGate = 0.12;  // of the fine pieces after the coarse ones [m]
 constexpr double kDirectGate = 0.25;   // of the fine pieces from the guess [m]
