@@ -25,9 +25,9 @@ struct DenseTrackerOptions {
   int finest_width = 320;  ///< widest pyramid level tracked [px], [40, 1920]
   int levels = 3;          ///< number of levels, each half the one before, [1, 6]
 
-  double min_gradient = 2.0;    ///< grey levels per pixel a textured pixel needs, [0, 255]
-  double textured_share = 0.3;  ///< of a level's pixels kept for their texture at most, [0, 1]
-  int flat_grid_step = 4;       ///< grid of the pixels kept for their depth alone [px], [1, 64]
+  double min_gradient = 2.0;     ///< grey levels per pixel a textured pixel needs, [0, 255]
+  double textured_share = 0.25;  ///< of a level's pixels kept for their texture at most, [0, 1]
+  int flat_grid_step = 4;        ///< grid of the pixels kept for their depth alone [px], [1, 64]
   /// Depth of the keyframe's pixels from the plane fitted there, where it agrees, instead of the
   /// few pixels around: less noise, but what is nearly flat becomes flat.
   bool plane_landmarks = true;

@@ -4,14 +4,18 @@
 
 namespace planecloud {
 
-void moveGrey(const Eigen::Isometry3d& T_color_depth, RgbdLevel& level, Image<float>& grey) {
-  const LevelCamera& camera = level.camera;
-  grey.resize(camera.width, camera.height);
+Image<float> greyOf(const RgbdLevel& level) {
+  Image<float> grey(level.camera.width, level.camera.height);
   for (std::size_t i = 0; i < grey.size(); ++i) grey.begin()[i] = level.pixels.begin()[i].grey;
+  return grey;
+}
+
+void moveGrey(const Eigen::Isometry3d& T_color_depth, ImageView<float> grey, RgbdLevel& level) {
+  const LevelCamera& camera = level.camera;
   const GreyMotion motion{T_color_depth.linear().cast<float>(),
                           T_color_depth.translation().cast<float>(), camera};
   for (int y = 0; y < camera.height; ++y) {
-    vectorMoveGreyRow()(motion, grey.view(), y, level.pixels.row(y));
+    vectorMoveGreyRow()(motion, grey, y, level.pixels.row(y));
   }
 }
 

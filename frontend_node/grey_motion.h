@@ -8,11 +8,14 @@
 
 namespace planecloud {
 
-/// Colour and depth images of a pair are taken up to half a frame apart. Moves the grey values of
-/// `level` to where they were seen from when its depth was taken: `T_color_depth` is the small
-/// motion of the camera in between. Pixels without depth count as far away; those that were outside
-/// the colour image repeat its border. `grey` is workspace.
-void moveGrey(const Eigen::Isometry3d& T_color_depth, RgbdLevel& level, Image<float>& grey);
+/// Colour and depth images of a pair are taken up to half a frame apart. Gives the pixels of
+/// `level` the grey values of `grey`, an image of its size, as seen from where its depth was taken:
+/// `T_color_depth` is the small motion of the camera in between. Pixels without depth count as far
+/// away; those that were outside the colour image repeat its border.
+void moveGrey(const Eigen::Isometry3d& T_color_depth, ImageView<float> grey, RgbdLevel& level);
+
+/// The grey values of a level.
+[[nodiscard]] Image<float> greyOf(const RgbdLevel& level);
 
 /// The same motion in the precision of the loop.
 struct GreyMotion {

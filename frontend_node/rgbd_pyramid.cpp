@@ -23,6 +23,8 @@ void halve(const RgbdLevel& fine, RgbdLevel& coarse) {
   }
 }
 
+bool isMotion(const Eigen::Isometry3d& T) { return !T.matrix().isIdentity(0.0); }
+
 }  // namespace
 
 LevelCamera levelCamera(const CameraIntrinsics& camera, int halvings) {
@@ -63,8 +65,7 @@ RgbdPyramid::RgbdPyramid(const CameraIntrinsics& camera, const DenseTrackerOptio
 void RgbdPyramid::assign(ImageView<std::uint8_t> grey, ImageView<float> depth,
                          const Eigen::Isometry3d& T_color_depth) {
   if (!takesHalfGrey()) {
-    assignFullSize(grey, depth);
-    return halveOn(T_color_depth);
+    return assignFullSize(grey, depth, T_color_depth);
   }
   half_grey_.resize(grey.width() / 2, grey.height() / 2);
   for (int y = 0; y < half_grey_.height(); ++y) {
@@ -81,10 +82,12 @@ void RgbdPyramid::assignHalf(ImageView<float> half_grey, ImageView<float> depth,
     vectorPyramidKernels().halve_depth({depth.row(2 * y), depth.row(2 * y + 1), half_grey.row(y)},
                                        depth_range_, first.camera.width, first.pixels.row(y));
   }
-  halveOn(T_color_depth);
+  if (isMotion(T_color_depth)) moveGrey(T_color_depth, half_grey, first);
+  halveOn();
 }
 
-void RgbdPyramid::assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth) {
+void RgbdPyramid::assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth,
+                                 const Eigen::Isometry3d& T_color_depth) {
   Image<GreyDepth>& pixels = levels_.front().pixels;
   for (int y = 0; y < pixels.height(); ++y) {
     for (int x = 0; x < pixels.width(); ++x) {
@@ -93,15 +96,16 @@ void RgbdPyramid::assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> 
       pixels(x, y) = {static_cast<float>(grey(x, y)), is_usable ? 1.0F / z : 0.0F};
     }
   }
+  if (isMotion(T_color_depth)) {
+    moveGrey(T_color_depth, greyOf(levels_.front()).view(), levels_.front());
+  }
+  halveOn();
 }
 
 /// Makes all levels of the first one.
-void RgbdPyramid::halveOn(const Eigen::Isometry3d& T_color_depth) {
+void RgbdPyramid::halveOn() {
   for (std::size_t i = 1; i < finer_.size(); ++i) halve(finer_[i - 1], finer_[i]);
   if (!finer_.empty()) halve(finer_.back(), levels_.front());
-  if (!T_color_depth.matrix().isIdentity(0.0)) {
-    moveGrey(T_color_depth, levels_.front(), moved_grey_);
-  }
   for (std::size_t i = 1; i < levels_.size(); ++i) halve(levels_[i - 1], levels_[i]);
 }
 

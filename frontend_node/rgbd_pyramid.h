@@ -57,15 +57,15 @@ class RgbdPyramid {
   [[nodiscard]] const std::vector<RgbdLevel>& levels() const { return levels_; }
 
  private:
-  void assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth);
-  void halveOn(const Eigen::Isometry3d& T_color_depth);
+  void assignFullSize(ImageView<std::uint8_t> grey, ImageView<float> depth,
+                      const Eigen::Isometry3d& T_color_depth);
+  void halveOn();
 
   DepthRange depth_range_;
   int first_halvings_;
   std::vector<RgbdLevel> finer_;  ///< levels above the finest tracked one, only steps to it
   std::vector<RgbdLevel> levels_;
-  Image<float> half_grey_;   ///< keeps its memory
-  Image<float> moved_grey_;  ///< likewise
+  Image<float> half_grey_;  ///< keeps its memory
 };
 
 }  // namespace planecloud

@@ -43,8 +43,7 @@ TEST(GreyMotion, MovesColourToWhereDepthWasTaken) {
   const RgbdLevel at_once = mixedLevel(Eigen::Isometry3d::Identity());
   RgbdLevel moved = mixedLevel(kColorDepth);
   const double before = difference(at_once, moved);
-  Image<float> workspace;
-  moveGrey(kColorDepth, moved, workspace);
+  moveGrey(kColorDepth, greyOf(moved).view(), moved);
   EXPECT_GT(before, 5.0);
   EXPECT_LT(difference(at_once, moved), 0.15 * before);  // edges of the pillar; interpolation
 }
@@ -52,8 +51,7 @@ TEST(GreyMotion, MovesColourToWhereDepthWasTaken) {
 TEST(GreyMotion, LeavesDepthAloneAndGreyWhereNothingMoved) {
   const RgbdLevel level = mixedLevel(Eigen::Isometry3d::Identity());
   RgbdLevel same = level;
-  Image<float> workspace;
-  moveGrey(Eigen::Isometry3d::Identity(), same, workspace);
+  moveGrey(Eigen::Isometry3d::Identity(), greyOf(same).view(), same);
   for (std::size_t i = 0; i < level.pixels.size(); ++i) {
     ASSERT_EQ(same.pixels.begin()[i].inverse_depth, level.pixels.begin()[i].inverse_depth);
     ASSERT_NEAR(same.pixels.begin()[i].grey, level.pixels.begin()[i].grey, 0.2F) << i;
