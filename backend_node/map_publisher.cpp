@@ -14,6 +14,8 @@ constexpr std::uint32_t kQueue = 2;
 constexpr bool kLatch = true;
 /// How long a transform is valid, in periods: timers are late at times.
 constexpr double kTfValidity = 1.5;
+/// Simulated time may run this much faster than the timer's.
+constexpr double kFastestClock = 5.0;
 
 /// The frame of a component: the map, or one of its own as long as the relation is unknown.
 std::string frameOfComponent(const std::string& map_frame, int component) {
@@ -127,7 +129,12 @@ void MapPublisher::broadcastTransforms() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (transforms_.empty()) return;
   // As amcl does: valid until the next one is there, or nobody could look up the present.
-  ros::Time stamp = ros::Time::now() + ros::Duration(kTfValidity * options_.tf_period);
+  const ros::Time now = ros::Time::now();
+  const double since_last = last_broadcast_.isZero() ? 0.0 : (now - last_broadcast_).toSec();
+  last_broadcast_ = now;
+  const double period = options_.tf_period;
+  const double until_next = std::clamp(since_last, period, kFastestClock * period);
+  ros::Time stamp = now + ros::Duration(kTfValidity * until_next);
   // While a bag is paused, time stands still; the same stamp again would be refused.
   const bool stands_still = stamp <= last_stamp_ && last_stamp_ - stamp < ros::Duration(1.0);
   if (stands_still) stamp = last_stamp_ + ros::Duration(0, 1000);

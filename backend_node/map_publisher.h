@@ -50,7 +50,8 @@ class MapPublisher {
   std::mutex mutex_;
   Snapshot latest_;
   std::vector<geometry_msgs::TransformStamped> transforms_;
-  ros::Time last_stamp_;  ///< of the transforms
+  ros::Time last_stamp_;      ///< of the transforms
+  ros::Time last_broadcast_;  ///< of them, when it was
   std::atomic<bool> start_over_{false};
   std::map<std::string, ros::Publisher> path_publishers_;  ///< by robot
   ros::Publisher plane_map_publisher_;
