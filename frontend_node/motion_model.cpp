@@ -13,12 +13,13 @@ constexpr double kLongestExtrapolation = 3.0;
 }  // namespace
 
 void MotionModel::observe(const Eigen::Isometry3d& T_previous_current, double seconds) {
-  velocity_ = last_velocity_ = logSe3(T_previous_current) / seconds;
+  velocity_ = logSe3(T_previous_current) / seconds;
+  is_known_ = true;
 }
 
 std::optional<Eigen::Isometry3d> MotionModel::after(double seconds) const {
-  if (!velocity_) return std::nullopt;
-  return expSe3(*velocity_ * seconds);
+  if (!is_known_) return std::nullopt;
+  return expSe3(velocity_ * seconds);
 }
 
 std::vector<Eigen::Isometry3d> MotionModel::possibleMotions(double seconds) const {
@@ -26,7 +27,7 @@ std::vector<Eigen::Isometry3d> MotionModel::possibleMotions(double seconds) cons
   const double moved = std::min(seconds, kLongestExtrapolation);
   for (const double share : {0.6, 1.0}) {
     for (const double turn : {0.0, -0.15, 0.15, -0.3, 0.3}) {
-      motions.push_back(expSe3(last_velocity_ * (share * moved)) *
+      motions.push_back(expSe3(velocity_ * (share * moved)) *
                         Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()));
     }
   }

@@ -15,7 +15,7 @@ class MotionModel {
   /// The motion of the camera over the last `seconds`, > 0.
   void observe(const Eigen::Isometry3d& T_previous_current, double seconds);
   /// The camera may have turned: nothing is known until the next observation.
-  void forget() { velocity_.reset(); }
+  void forget() { is_known_ = false; }
 
   /// Motion within `seconds` from now, which may be negative; none when not known.
   [[nodiscard]] std::optional<Eigen::Isometry3d> after(double seconds) const;
@@ -25,8 +25,8 @@ class MotionModel {
   [[nodiscard]] std::vector<Eigen::Isometry3d> possibleMotions(double seconds) const;
 
  private:
-  std::optional<Vector6d> velocity_;           ///< [m/s, rad/s], at the camera
-  Vector6d last_velocity_ = Vector6d::Zero();  ///< the same, kept
+  Vector6d velocity_ = Vector6d::Zero();  ///< when last observed [m/s, rad/s], at the camera
+  bool is_known_ = false;                 ///< it still holds
 };
 
 }  // namespace planecloud
