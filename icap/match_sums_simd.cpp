@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -236,7 +235,9 @@ double total(MatchLanes lanes) {
 
 template <std::size_t Size>
 void totals(const std::array<MatchLanes, Size>& lanes, std::array<double, Size>& sums) {
-  std::transform(lanes.begin(), lanes.end(), sums.begin(), total);
+  // Not by an algorithm of the standard library: that is compiled without these instructions and
+  // would hand vectors over by another calling convention.
+  for (std::size_t i = 0; i < Size; ++i) sums[i] = total(lanes[i]);
 }
 
 MatchSums totals(const LaneSums& lanes) {
