@@ -11,7 +11,7 @@ namespace planecloud {
 
 /// When a new keyframe opens; each criterion alone suffices.
 struct KeyframeSelectorOptions {
-  double max_translation = 0.2;     ///< from the keyframe [m], [0.01, 10]
+  double max_translation = 0.25;    ///< from the keyframe [m], [0.01, 10]
   double max_rotation = 0.26;       ///< from the keyframe [rad], [0.01, 3]
   double min_entropy_ratio = 0.85;  ///< of Kerl 2013b sec. IV-B, [0, 1]; 0: never by entropy
   /// Share of the keyframe's points still in view, [0, 1]; 0: never by overlap. Near scenes leave

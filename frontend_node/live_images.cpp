@@ -5,19 +5,22 @@
 namespace planecloud {
 
 LiveImages::LiveImages(const CameraIntrinsics& camera, const DenseTrackerOptions& options)
-    : pyramid_(camera.rectified(), options) {
+    : pyramids_{RgbdPyramid(camera.rectified(), options),
+                RgbdPyramid(camera.rectified(), options)} {
   if (camera.hasDistortion()) rectifier_.emplace(camera);
 }
 
 void LiveImages::assign(const RgbdFrame& frame, const Eigen::Isometry3d& T_color_depth) {
-  if (!rectifier_) return pyramid_.assign(frame.grey.view(), frame.depth.view(), T_color_depth);
+  current_ = 1 - kept_;
+  RgbdPyramid& pyramid = pyramids_[current_];
+  if (!rectifier_) return pyramid.assign(frame.grey.view(), frame.depth.view(), T_color_depth);
   rectifier_->rectifyDepth(frame.depth, rectified_.depth);
-  if (pyramid_.takesHalfGrey()) {
+  if (pyramid.takesHalfGrey()) {
     rectifier_->rectifyHalfGrey(frame.grey, half_grey_);
-    return pyramid_.assignHalf(half_grey_.view(), rectified_.depth.view(), T_color_depth);
+    return pyramid.assignHalf(half_grey_.view(), rectified_.depth.view(), T_color_depth);
   }
   rectifier_->rectifyColors(frame, rectified_);
-  pyramid_.assign(rectified_.grey.view(), rectified_.depth.view(), T_color_depth);
+  pyramid.assign(rectified_.grey.view(), rectified_.depth.view(), T_color_depth);
 }
 
 ImageView<float> LiveImages::depth(const RgbdFrame& frame) const {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include "planecloud_slam/frontend_node/rectifier.h"
@@ -21,7 +23,11 @@ class LiveImages {
   void assign(const RgbdFrame& frame,
               const Eigen::Isometry3d& T_color_depth = Eigen::Isometry3d::Identity());
 
-  [[nodiscard]] const RgbdPyramid& pyramid() const { return pyramid_; }
+  [[nodiscard]] const RgbdPyramid& pyramid() const { return pyramids_[current_]; }
+  /// Keeps the pyramid of the frame assigned last until this is called again.
+  void keep() { kept_ = current_; }
+  /// The pyramid kept last; that of no frame when none was.
+  [[nodiscard]] const RgbdPyramid& kept() const { return pyramids_[kept_]; }
   /// Depth [m, NaN: none] of `frame`, the one assigned last.
   [[nodiscard]] ImageView<float> depth(const RgbdFrame& frame) const;
   /// All images of `frame`, the one assigned last.
@@ -29,7 +35,9 @@ class LiveImages {
 
  private:
   std::optional<Rectifier> rectifier_;  ///< of a camera with distortion
-  RgbdPyramid pyramid_;
+  std::array<RgbdPyramid, 2> pyramids_;
+  std::size_t current_ = 0;
+  std::size_t kept_ = 0;
   RgbdFrame rectified_;     ///< keeps its memory
   Image<float> half_grey_;  ///< likewise
 };

@@ -123,7 +123,11 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
   brightness_ = alignment.brightness;
   const bool is_obstructed = loss_.isObstructed(alignment);
-  if (!is_obstructed) loss_.learn(alignment);
+  if (!is_obstructed) {
+    loss_.learn(alignment);
+    last_good_.set(alignment);
+    images_.keep();
+  }
   last_good_stamp_ = frame.stamp;
   usable_lost_ = 0.0;
   last_was_usable_ = true;
@@ -155,9 +159,8 @@ FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& 
   const auto is_doubtless = [this](const Alignment& alignment, bool is_lenient) {
     return loss_.findDoubt(alignment, is_lenient).empty();
   };
-  const std::optional<Relocalisation> found = relocaliser_.find(
-      images_.pyramid(), {{reference_.view, reference_.points, possiblePoses(frame.stamp)}},
-      history_, is_doubtless);
+  const std::optional<Relocalisation> found =
+      relocaliser_.find(images_.pyramid(), expectedPlaces(frame.stamp), history_, is_doubtless);
   if (found) return resume(frame, *found);
   if (usable_lost_ < options_.lost.new_segment_after) return lose(fault);
   if (wheels_since_good_) return bridgeByWheels(frame);
@@ -165,16 +168,23 @@ FrameResult TrackingSession::recover(const RgbdFrame& frame, const std::string& 
   return openSegment(frame);
 }
 
-/// Where the camera may have gone since the last good frame, what is predicted first.
-std::vector<Eigen::Isometry3d> TrackingSession::possiblePoses(double stamp) const {
+/// The keyframe and the last good image, and where the camera may have gone there since: what is
+/// predicted first.
+std::vector<ExpectedPlace> TrackingSession::expectedPlaces(double stamp) {
   std::vector<Eigen::Isometry3d> poses = {T_reference_predicted_, T_reference_last_};
   for (const Eigen::Isometry3d& T : motion_.possibleMotions(stamp - last_good_stamp_)) {
     poses.push_back(T_reference_last_ * T);
   }
-  return poses;
+  std::vector<ExpectedPlace> places = {{reference_.view, reference_.points, poses}};
+  if (last_good_.isSet()) {
+    places.push_back(last_good_.place(*reference_.view, images_.kept(), options_.tracking, poses));
+  }
+  return places;
 }
 
 FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation& found) {
+  // Out of the keyframe's sight: a new one begins here.
+  if (last_good_.isAt(found)) return accept(frame, last_good_.toKeyframe(found.alignment), true);
   const bool is_elsewhere = found.view != reference_.view;
   if (is_elsewhere) switchTo(found);
   const bool leaving = selector_.isLeavingKeyframe(
@@ -248,6 +258,7 @@ void TrackingSession::openKeyframe(const RgbdFrame& frame, const Eigen::Isometry
   open_.open(images_.full(frame), reference_, std::move(edges));
   brightness_ = Brightness{};
   T_reference_last_ = T_reference_predicted_ = Eigen::Isometry3d::Identity();
+  last_good_.forget();
   usable_lost_ = 0.0;
   selector_.reset();
 }
@@ -267,6 +278,7 @@ void TrackingSession::switchTo(const Relocalisation& found) {
   completeKeyframe();
   reference_ = {found.view, found.reference};
   segment_ = found.view->segment;
+  last_good_.forget();
   selector_.reset();
 }
 

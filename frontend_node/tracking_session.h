@@ -11,6 +11,7 @@
 #include "planecloud_slam/frontend_node/dense_tracker.h"
 #include "planecloud_slam/frontend_node/frontend.h"
 #include "planecloud_slam/frontend_node/keyframe_selector.h"
+#include "planecloud_slam/frontend_node/last_good_image.h"
 #include "planecloud_slam/frontend_node/live_images.h"
 #include "planecloud_slam/frontend_node/loss_detector.h"
 #include "planecloud_slam/frontend_node/motion_model.h"
@@ -51,7 +52,7 @@ class TrackingSession {
   [[nodiscard]] FrameResult accept(const RgbdFrame& frame, const Alignment& alignment,
                                    bool leaving);
   [[nodiscard]] FrameResult recover(const RgbdFrame& frame, const std::string& fault);
-  [[nodiscard]] std::vector<Eigen::Isometry3d> possiblePoses(double stamp) const;
+  [[nodiscard]] std::vector<ExpectedPlace> expectedPlaces(double stamp);
   [[nodiscard]] FrameResult resume(const RgbdFrame& frame, const Relocalisation& found);
   [[nodiscard]] FrameResult lose(const std::string& reason);
   [[nodiscard]] FrameResult bridgeByWheels(const RgbdFrame& frame);
@@ -77,6 +78,7 @@ class TrackingSession {
   std::optional<PlanarMotion> planar_;  ///< of this segment, when motion is restricted to it
 
   TrackedReference reference_;  ///< what frames are aligned to; no view: none
+  LastGoodImage last_good_;
   std::deque<KeyframeViewPtr> history_;
   KeyframeId next_id_;
   int segment_ = -1;
