@@ -174,6 +174,11 @@ bool LossDetector::isObstructed(const Alignment& alignment) const {
          alignment.inliers < normal_inliers_ - kObstruction;
 }
 
+bool LossDetector::isOrdinary(const Alignment& alignment) const {
+  return alignment.scale.sigma_grey <= greyLimit(kMostGrowth) &&
+         alignment.inliers >= normal_inliers_ - kInlierSlack;
+}
+
 std::string LossDetector::findImplausibleMotion(const TrackedMotion& motion) const {
   const double translation = motion.T_previous_current.translation().norm();
   if (translation > options_.max_speed * motion.seconds + kMotionSlack) {

@@ -44,6 +44,9 @@ class LossDetector {
   /// nothing to learn from, nor to make a keyframe of, which would be tracked by who walks away.
   [[nodiscard]] bool isObstructed(const Alignment& alignment) const;
 
+  /// The view is what the keyframe shows there, as usual: nobody in it would be taken for a place.
+  [[nodiscard]] bool isOrdinary(const Alignment& alignment) const;
+
   /// A good frame was aligned so.
   void learn(const Alignment& alignment);
 

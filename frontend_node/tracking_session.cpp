@@ -123,8 +123,8 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
   brightness_ = alignment.brightness;
   const bool is_obstructed = loss_.isObstructed(alignment);
-  if (!is_obstructed) {
-    loss_.learn(alignment);
+  if (!is_obstructed) loss_.learn(alignment);
+  if (loss_.isOrdinary(alignment)) {
     last_good_.set(alignment);
     images_.keep();
   }
