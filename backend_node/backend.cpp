@@ -15,6 +15,7 @@
 #include "planecloud_slam/backend_node/keyframe_map.h"
 #include "planecloud_slam/backend_node/loop_closure_detector.h"
 #include "planecloud_slam/backend_node/plane_set_cache.h"
+#include "planecloud_slam/backend_node/rejected_closures.h"
 #include "planecloud_slam/backend_node/session_ledger.h"
 
 namespace planecloud {
@@ -25,6 +26,8 @@ constexpr std::size_t kPreparedKeyframes = 24;
 
 /// Of the map: how much it grows before it is worth to optimise it as a whole again.
 constexpr double kLeastGrowth = 0.02;
+
+constexpr char kFoundFalseLater[] = "found_false_later";
 
 BackendOptions checked(BackendOptions options) {
   options.check();
@@ -73,7 +76,7 @@ class Backend::Impl {
   }
 
   void optimize() {
-    countRemoved(map_.graph().optimize().removed.size());
+    rejected_.add(map_.graph().optimize().removed, kFoundFalseLater);
     optimised();
   }
 
@@ -91,7 +94,7 @@ class Backend::Impl {
     const bool known =
         copy.size() > 0 && copy.size() <= map_.graph().size() && copy.id(0) == map_.graph().id(0);
     if (!known) return;
-    countRemoved(map_.graph().adopt(copy, optimisation.summary()).size());
+    rejected_.add(map_.graph().adopt(copy, optimisation.summary()), kFoundFalseLater);
     changed();
   }
 
@@ -102,7 +105,12 @@ class Backend::Impl {
   }
 
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() {
-    if (!snapshot_) snapshot_ = map_.snapshot(revision_);
+    if (!snapshot_) {
+      MapSnapshot snapshot = map_.snapshot();
+      snapshot.revision = revision_;
+      snapshot.rejected = rejected_.newest();
+      snapshot_ = std::make_shared<const MapSnapshot>(std::move(snapshot));
+    }
     return snapshot_;
   }
 
@@ -110,7 +118,7 @@ class Backend::Impl {
     BackendStatistics statistics;
     statistics.keyframes = static_cast<std::size_t>(map_.graph().size());
     statistics.components = map_.graph().components();
-    statistics.rejected = rejected_;
+    statistics.rejected = rejected_.counts();
     statistics.closures_intra = map_.graph().closures(false);
     statistics.closures_inter = map_.graph().closures(true);
     return statistics;
@@ -130,10 +138,6 @@ class Backend::Impl {
     changed();
   }
 
-  void countRemoved(std::size_t removed) {
-    if (removed > 0) rejected_["found_false_later"] += removed;
-  }
-
   /// All that is known so far is in an optimisation of the whole.
   void optimised() {
     settled_ = true;
@@ -150,7 +154,8 @@ class Backend::Impl {
     for (const LoopCandidate& candidate : detector_.detect(map_.graph(), map_.records(), node)) {
       const ClosureCheck check = verify(candidate);
       if (check.verdict != ClosureVerdict::kAccepted) {
-        ++rejected_[toString(check.verdict)];
+        rejected_.add({map_.graph().id(candidate.target), map_.graph().id(candidate.source),
+                       toString(check.verdict)});
         ++result.rejected_closures;
         continue;
       }
@@ -196,9 +201,10 @@ class Backend::Impl {
       map_.graph().addEdge(accepted);
       result.closures.push_back(std::move(accepted));
     }
-    if (admission.rejected > 0) rejected_["inconsistent_with_closures"] += admission.rejected;
-    if (admission.expired > 0) rejected_["no_witness"] += admission.expired;
-    result.rejected_closures += static_cast<int>(admission.rejected + admission.expired);
+    rejected_.add(admission.rejected, "inconsistent_with_closures");
+    rejected_.add(admission.expired, "no_witness");
+    result.rejected_closures +=
+        static_cast<int>(admission.rejected.size() + admission.expired.size());
   }
 
   BackendOptions options_;
@@ -209,7 +215,7 @@ class Backend::Impl {
   ClosureConsistency consistency_;
   JoinCheck join_check_;
   PlaneSetCache plane_sets_;
-  std::map<std::string, std::size_t> rejected_;
+  RejectedClosures rejected_;
   bool settled_ = true;    ///< no closures wait for an optimisation of the whole
   std::size_t added_ = 0;  ///< keyframes since the last optimisation of the whole
   std::uint64_t revision_ = 0;

@@ -34,7 +34,7 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
   const Testimony testimony = intra ? hear(graph, comparison) : Testimony();
   ClosureAdmission admission;
   if (testimony.contradicting > testimony.agreeing) {
-    admission.rejected = 1;
+    admission.rejected.push_back(closure);
     return admission;
   }
   Pending offered{closure, next_serial_++, {}};
@@ -42,8 +42,8 @@ ClosureAdmission ClosureConsistency::offer(const PoseGraph& graph, const GraphEd
   pending_.push_back(std::move(offered));
   admission = intra ? admitIntra(graph, testimony) : admitInter(graph, holds);
   if (pending_.size() > static_cast<std::size_t>(options_.max_pending)) {
+    admission.expired.push_back(std::move(pending_.front().closure));
     pending_.erase(pending_.begin());
-    ++admission.expired;
   }
   return admission;
 }
@@ -134,7 +134,7 @@ ClosureAdmission ClosureConsistency::admitInter(const PoseGraph& graph, const Jo
   if (admission.join && !holds(*admission.join, closures)) admission.join.reset();
   if (!admission.join) return admission;
   // What did not agree with the group that joined is false.
-  admission.rejected = others.size();
+  admission.rejected = closuresAt(others);
   static_cast<void>(take(peers));
   admission.closures = std::move(closures);
   return admission;

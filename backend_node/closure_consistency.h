@@ -20,8 +20,8 @@ namespace planecloud {
 struct ClosureAdmission {
   std::vector<GraphEdge> closures;    ///< enter the graph now; empty: it waits or was rejected
   std::optional<ComponentJoin> join;  ///< to apply before they enter
-  std::size_t rejected = 0;           ///< contradict the others
-  std::size_t expired = 0;            ///< waited in vain
+  std::vector<GraphEdge> rejected;    ///< contradict the others
+  std::vector<GraphEdge> expired;     ///< waited in vain
 };
 
 /// Lets a closure into the graph when enough others agree with it (pairwise consistency); closures

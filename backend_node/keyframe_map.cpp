@@ -3,6 +3,7 @@
 #include "planecloud_slam/backend_node/keyframe_map.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "planecloud_slam/backend_node/drift_model.h"
@@ -138,16 +139,15 @@ void KeyframeMap::level(int node, const PlaneCloud& planes) {
   levelled_.insert(graph_.id(oldest));
 }
 
-std::shared_ptr<const MapSnapshot> KeyframeMap::snapshot(std::uint64_t revision) const {
-  auto snapshot = std::make_shared<MapSnapshot>();
-  snapshot->revision = revision;
-  snapshot->nodes.reserve(records_.size());
+MapSnapshot KeyframeMap::snapshot() const {
+  MapSnapshot snapshot;
+  snapshot.nodes.reserve(records_.size());
   for (const auto& [id, node] : graph_.numbers()) {
-    snapshot->nodes.push_back({records_[static_cast<std::size_t>(node)].keyframe, graph_.pose(node),
-                               graph_.component(node)});
+    snapshot.nodes.push_back({records_[static_cast<std::size_t>(node)].keyframe, graph_.pose(node),
+                              graph_.component(node)});
   }
-  snapshot->edges = graph_.edges();
-  snapshot->components = graph_.components();
+  snapshot.edges = graph_.edges();
+  snapshot.components = graph_.components();
   return snapshot;
 }
 

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <vector>
@@ -31,8 +29,8 @@ class KeyframeMap {
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
   [[nodiscard]] const KeyframeRecords& records() const { return records_; }
 
-  /// An immutable picture of it all.
-  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot(std::uint64_t revision) const;
+  /// A picture of it all, without revision and rejected closures.
+  [[nodiscard]] MapSnapshot snapshot() const;
 
  private:
   [[nodiscard]] std::optional<int> predecessor(const KeyframeId& id) const;

@@ -20,7 +20,8 @@ constexpr double kVisibleRotation = 0.003;  // [rad]
 constexpr float kJoinedAlpha = 1.0F;
 /// Keyframes whose relation to the map is unknown show through.
 constexpr float kSeparateAlpha = 0.3F;
-constexpr double kNodeSize = 0.09;  // [m]
+constexpr double kNodeSize = 0.09;       // [m]
+constexpr double kRejectedWidth = 0.01;  // [m]
 /// Patches seen more grazingly (cosine between normal and ray) are streaks along depth jumps.
 constexpr double kMinIncidence = 0.12;
 
@@ -36,6 +37,7 @@ std_msgs::ColorRGBA makeColor(const RobotColor& color, float alpha) {
 const std_msgs::ColorRGBA kHistoryColor = makeColor({150, 150, 150}, 0.5F);
 const std_msgs::ColorRGBA kClosureColor = makeColor({220, 20, 40}, 1.0F);
 const std_msgs::ColorRGBA kInterRobotColor = makeColor({255, 0, 200}, 1.0F);
+const std_msgs::ColorRGBA kRejectedColor = makeColor({220, 20, 40}, 0.6F);
 
 geometry_msgs::Point positionOf(const Eigen::Isometry3d& T_map_camera) {
   return toPoseMessage(T_map_camera).position;
@@ -203,6 +205,28 @@ visualization_msgs::MarkerArray makeGraphMarkers(const MapSnapshot& snapshot,
     marker.header = header;
     if (marker.points.empty()) marker.action = visualization_msgs::Marker::DELETE;
   }
+  return markers;
+}
+
+visualization_msgs::MarkerArray makeRejectedMarkers(const MapSnapshot& snapshot,
+                                                    const std_msgs::Header& header) {
+  const Nodes nodes = indexNodes(snapshot);
+  std::map<std::string, visualization_msgs::Marker> by_reason;
+  for (const RejectedClosure& rejected : snapshot.rejected) {
+    const auto [entry, is_new] = by_reason.try_emplace(rejected.reason);
+    visualization_msgs::Marker& marker = entry->second;
+    if (is_new) {
+      marker = makeMarker(rejected.reason, visualization_msgs::Marker::LINE_LIST, kRejectedWidth);
+      marker.header = header;
+      marker.color = kRejectedColor;
+    }
+    for (const KeyframeId& end : {rejected.from, rejected.to}) {
+      marker.points.push_back(positionOf(nodes.at(end)->T_map_camera));
+    }
+  }
+  visualization_msgs::MarkerArray markers;
+  markers.markers.push_back(makeDeleteAll(header));
+  for (auto& [reason, marker] : by_reason) markers.markers.push_back(std::move(marker));
   return markers;
 }
 

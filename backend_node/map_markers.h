@@ -58,6 +58,11 @@ class PlaneMapMarkers {
 [[nodiscard]] visualization_msgs::MarkerArray makeGraphMarkers(const MapSnapshot& snapshot,
                                                                const std_msgs::Header& header);
 
+/// The newest candidates that are no closures for rviz: thin red lines, a namespace for each
+/// reason, so that each can be shown alone. Deletes the ones sent before.
+[[nodiscard]] visualization_msgs::MarkerArray makeRejectedMarkers(const MapSnapshot& snapshot,
+                                                                  const std_msgs::Header& header);
+
 /// Keyframe poses by robot, oldest first; only those whose relation to the map is known.
 [[nodiscard]] std::map<std::string, nav_msgs::Path> makePaths(const MapSnapshot& snapshot,
                                                               const std_msgs::Header& header);

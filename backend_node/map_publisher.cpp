@@ -31,10 +31,13 @@ MapPublisher::MapPublisher(const ros::NodeHandle& node, const BackendNodeOptions
       cloud_builder_(options.cloud_resolution, options.map_coloring),
       snapshots_(1) {
   const auto on_new = [this](const ros::SingleSubscriberPublisher&) { onNewSubscriber(); };
+  const auto on_request = [this](const ros::SingleSubscriberPublisher&) { publishLatest(); };
   plane_map_publisher_ =
       node_.advertise<visualization_msgs::MarkerArray>("plane_map", kQueue, on_new);
   cloud_publisher_ = node_.advertise<sensor_msgs::PointCloud2>("map_cloud", kQueue, on_new);
   graph_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("pose_graph", kQueue, kLatch);
+  rejected_publisher_ =
+      node_.advertise<visualization_msgs::MarkerArray>("rejected_closures", kQueue, on_request);
   timer_ = node_.createWallTimer(ros::WallDuration(options.tf_period),
                                  [this](const ros::WallTimerEvent&) { broadcastTransforms(); });
   publishing_ = std::thread([this] { publishLoop(); });
@@ -44,6 +47,7 @@ MapPublisher::~MapPublisher() {
   timer_.stop();
   plane_map_publisher_.shutdown();
   cloud_publisher_.shutdown();
+  rejected_publisher_.shutdown();
   snapshots_.close();
   publishing_.join();
 }
@@ -59,6 +63,10 @@ void MapPublisher::show(std::shared_ptr<const MapSnapshot> snapshot) {
 
 void MapPublisher::onNewSubscriber() {
   start_over_ = true;
+  publishLatest();
+}
+
+void MapPublisher::publishLatest() {
   Snapshot latest;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -89,6 +97,9 @@ void MapPublisher::publish(const MapSnapshot& snapshot) {
     cloud_publisher_.publish(cloud_builder_.build(snapshot, header));
   }
   graph_publisher_.publish(makeGraphMarkers(snapshot, header));
+  if (rejected_publisher_.getNumSubscribers() > 0) {
+    rejected_publisher_.publish(makeRejectedMarkers(snapshot, header));
+  }
   publishPaths(snapshot, header);
 }
 

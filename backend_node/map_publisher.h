@@ -22,8 +22,9 @@
 
 namespace planecloud {
 
-/// Shows the map to others: `plane_map`, `map_cloud`, `pose_graph`, a `path` for each robot and tf
-/// `map -> odom`. Works on snapshots in its own thread, so that nobody waits for it.
+/// Shows the map to others: `plane_map`, `map_cloud`, `pose_graph`, `rejected_closures`, a `path`
+/// for each robot and tf `map -> odom`. Works on snapshots in its own thread, so that nobody waits
+/// for it.
 class MapPublisher {
  public:
   MapPublisher(const ros::NodeHandle& node, const BackendNodeOptions& options);
@@ -40,6 +41,8 @@ class MapPublisher {
   void publishPaths(const MapSnapshot& snapshot, const std_msgs::Header& header);
   /// Somebody subscribed to what is sent in parts: everything goes out once more.
   void onNewSubscriber();
+  /// Publishes what is known now to those who see nothing yet.
+  void publishLatest();
   void updateTransforms(const MapSnapshot& snapshot);
   void broadcastTransforms();
 
@@ -57,6 +60,7 @@ class MapPublisher {
   ros::Publisher plane_map_publisher_;
   ros::Publisher cloud_publisher_;
   ros::Publisher graph_publisher_;
+  ros::Publisher rejected_publisher_;
   tf2_ros::TransformBroadcaster broadcaster_;
   ros::WallTimer timer_;
   BoundedQueue<Snapshot> snapshots_;

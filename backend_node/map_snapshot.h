@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "planecloud_slam/backend_node/edge_list.h"
 #include "planecloud_slam/backend_node/graph_edge.h"
+#include "planecloud_slam/backend_node/rejected_closures.h"
 #include "planecloud_slam/plane_fit/keyframe.h"
 #include "planecloud_slam/plane_fit/plane_cloud.h"
 
@@ -57,6 +59,7 @@ struct MapSnapshot {
   std::uint64_t revision = 0;  ///< grows with every change
   std::vector<Node> nodes;     ///< ordered by id
   EdgeList edges;
+  std::deque<RejectedClosure> rejected;  ///< the newest, between keyframes of `nodes`
   int components = 0;
 };
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, the planecloud_slam authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs `compress` and reads what it measured, image by image."""
+"""Runs `compress` and the benches that measure beside it, and reads what they say."""
 
 import csv
 import json
@@ -25,10 +25,10 @@ def words(flags):
 
 
 class Sequence:
-    """An input of `compress` and how much of it is taken."""
+    """An input of `compress`, how much of it is taken and which two images are aligned."""
 
-    def __init__(self, path, name, every, images):
-        self.path, self.name = str(path), name
+    def __init__(self, path, name, every, images, pair):
+        self.path, self.name, self._pair = str(path), name, pair
         self._selection = ["--every", str(every), "--max-images", str(images)]
 
     def compress(self, **flags):
@@ -50,9 +50,15 @@ class Sequence:
 
     def peers(self, **flags):
         """What `bench_figures` measures of the paper's algorithm and of other codecs."""
-        command = ["rosrun", "planecloud_slam", "bench_figures", self.path, *self._selection]
-        result = subprocess.run(command + words(flags), check=True, text=True,
-                                stdout=subprocess.PIPE)
+        return self._measure("bench_figures", [*self._selection, *words(flags)])
+
+    def aligned_pair(self):
+        """What `bench_aligned_pair` makes of the two."""
+        return self._measure("bench_aligned_pair", ["--pair", *map(str, self._pair)])
+
+    def _measure(self, bench, arguments):
+        result = subprocess.run(["rosrun", "planecloud_slam", bench, self.path, *arguments],
+                                check=True, text=True, stdout=subprocess.PIPE)
         return json.loads(result.stdout)
 
     def _run(self, arguments, flags):

@@ -18,10 +18,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend comes first
 import numpy  # noqa: E402
 from compress_runs import Sequence  # noqa: E402
+from plane_picture import PlanePicture, Viewpoint, unit  # noqa: E402
 
 COARSE, FINE = 0.0131, 0.0027  # the paper's tolerances [m]
 # The paper's fit: 24 px tiles, one tolerance for all depths, no test along the ray, 32 B a plane.
 PAPER_TILES = {"initial_tile": 24, "acceptance": "fixed", "lambda": 0}
+HALLWAY_PAIR = (360, 380)  # images of its corner
+TARGET_COLOR, SOURCE_COLOR = (0.25, 0.5, 0.8), (0.95, 0.58, 0.18)
 KB = 1e-3
 
 
@@ -77,6 +80,50 @@ def figure_1(page, sequence):
             axis.axis("off")
     page.figure(f"figure_1_{sequence.name}", figure,
                 "Fig. 1, a building's hallway: scene, dense cloud, planes.")
+
+
+def move(points, pose):
+    """Points (... x 3), moved by a 4 x 4 matrix."""
+    pose = numpy.array(pose)
+    return points @ pose[:3, :3].T + pose[:3, 3]
+
+
+def from_above(up):
+    """A direction to look along: from behind the camera, above it and to its right."""
+    view = numpy.array([0.0, -0.01, 1.0])  # of a camera that looks straight down, the upper edge
+    ahead = unit(view - (view @ up) * up)
+    return unit(ahead - 0.45 * numpy.cross(ahead, up) - 0.6 * up)
+
+
+def titles_of(pair):
+    """What is known of an alignment's guess and of its result."""
+    titles = ["guess", "aligned by ICaP"]
+    for i, key in enumerate(("guess_error", "error")):
+        if key in pair:
+            error = pair[key]
+            titles[i] += (f", {1e3 * error['metres']:.0f} mm and {error['degrees']:.1f}\u00b0 "
+                          "off the truth")
+    status = pair["status"].replace("_", " ")
+    return titles[0], f"{titles[1]}, RMS {pair['rms_mm']:.0f} mm, {status}"
+
+
+def figure_2(page, sequence):
+    """Two plane clouds before and after their alignment."""
+    pair = sequence.aligned_pair()
+    up, target, source = (numpy.array(pair[key]) for key in ("up_target", "target", "source"))
+    moved = [move(source, pair[key]) for key in ("T_target_source_guess", "T_target_source")]
+    view = Viewpoint(numpy.concatenate([target, *moved]), from_above(up), up)
+    width, height = view.size
+    figure, axes = plt.subplots(1, 2, figsize=(14, 0.5 + 7 * height / width))
+    for axis, tiles, title in zip(axes, moved, titles_of(pair)):
+        picture = PlanePicture(view)
+        picture.draw(target, TARGET_COLOR, up)
+        picture.draw(tiles, SOURCE_COLOR, up)
+        axis.imshow(picture.pixels())
+        axis.set_title(title)
+        axis.axis("off")
+    page.figure(f"figure_2_{sequence.name}", figure,
+                "Fig. 2, two plane clouds before and after their alignment.")
 
 
 def table_1(page, sequence):
@@ -179,7 +226,7 @@ def figure_5(page, sequence):
                 "many bytes.")
 
 
-def table_2(page, seed):
+def table_2(page, seed=1):
     """A hallway's whole map."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(["rosrun", "planecloud_slam", "replay", f"hallway:{seed}", "--output", folder],
@@ -203,26 +250,41 @@ def render_hallway(folder, seed):
     return bag
 
 
-def main():
+OF_AN_INPUT = (figure_1, figure_2, table_1, figure_3, figure_4, figure_5)
+
+
+def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("figures"),
                         help="folder for PNGs and index.html, default figures")
     parser.add_argument("--images", type=int, default=40, help="taken of each input, default 40")
     parser.add_argument("--every", type=int, default=7, help="take each N-th image, default 7")
+    parser.add_argument("--pair", type=int, nargs=2, metavar="N", default=(0, 30),
+                        help="numbers of the images of an INPUT that figure_2 aligns, default 0 30")
+    parser.add_argument("--only", metavar="NAME",
+                        choices=[make.__name__ for make in (*OF_AN_INPUT, table_2)],
+                        help="one of them alone: figure_1 to figure_5, table_1, table_2")
     parser.add_argument("inputs", nargs="*", metavar="INPUT", help="bag or TUM folder")
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse_arguments()
     arguments.output.mkdir(parents=True, exist_ok=True)
     page = Page(arguments.output)
+    wanted = lambda make: arguments.only in (None, make.__name__)
     with tempfile.TemporaryDirectory() as folder:
-        inputs = [(render_hallway(folder, 1), "hallway")]
-        inputs += [(path, pathlib.Path(path).stem) for path in arguments.inputs]
-        for path, name in inputs:
-            sequence = Sequence(path, name, arguments.every, arguments.images)
+        inputs = [(path, pathlib.Path(path).stem, arguments.pair) for path in arguments.inputs]
+        if any(map(wanted, OF_AN_INPUT)):
+            inputs.insert(0, (render_hallway(folder, 1), "hallway", HALLWAY_PAIR))
+        for path, name, pair in inputs:
+            sequence = Sequence(path, name, arguments.every, arguments.images, pair)
             page.heading(name)
-            for make in (figure_1, table_1, figure_3, figure_4, figure_5):
+            for make in filter(wanted, OF_AN_INPUT):
                 make(page, sequence)
-    page.heading("The hallway's map")
-    table_2(page, 1)
+    if wanted(table_2):
+        page.heading("The hallway's map")
+        table_2(page)
     page.write()
 
 

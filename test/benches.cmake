@@ -60,6 +60,9 @@ foreach(part common features filters kdtree registration search)
   target_link_libraries(${PROJECT_NAME}_bench_icap ${PLANECLOUD_SLAM_PCL_${part}})
 endforeach()
 target_include_directories(${PROJECT_NAME}_bench_icap SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
+planecloud_slam_add_bench(bench_aligned_pair
+  LINK ${PROJECT_NAME}_compression ${PROJECT_NAME}_icap ${PROJECT_NAME}_open_recordings
+    ${PROJECT_NAME}_command_line)
 
 # --- tracking
 planecloud_slam_add_bench(bench_tracking

@@ -100,8 +100,18 @@ TEST(Backend, KeepsRobotsApartThatTheHintsMisplace) {
   }
   Backend backend = mapped(first.keyframes);
   for (const Keyframe& keyframe : second.keyframes) backend.insert(keyframe);
-  EXPECT_EQ(backend.snapshot()->components, 2);
+  const auto map = backend.snapshot();
+  EXPECT_EQ(map->components, 2);
   EXPECT_EQ(backend.statistics().closures_inter, 0u);
+  // Each hint was a candidate, and the map says what became of it.
+  std::map<std::string, std::size_t> rejected;
+  std::size_t between_robots = 0;
+  for (const RejectedClosure& pair : map->rejected) {
+    ++rejected[pair.reason];
+    if (pair.from.robot != pair.to.robot) ++between_robots;
+  }
+  EXPECT_EQ(rejected, backend.statistics().rejected);
+  EXPECT_GE(between_robots, second.keyframes.size() / 2);
 }
 
 TEST(Backend, LevelsTheMapWithTheFloor) {
