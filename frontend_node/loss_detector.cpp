@@ -169,9 +169,9 @@ std::string LossDetector::findDoubt(const Alignment& alignment, bool is_lenient)
   return findUncertainty(alignment);
 }
 
-bool LossDetector::isObstructed(const Alignment& alignment) const {
-  return alignment.overlap > kObstructedOverlap &&
-         alignment.inliers < normal_inliers_ - kObstruction;
+bool LossDetector::isObstructed(const Alignment& alignment, bool is_wary) const {
+  if (alignment.overlap <= kObstructedOverlap) return false;
+  return is_wary ? !isOrdinary(alignment) : alignment.inliers < normal_inliers_ - kObstruction;
 }
 
 bool LossDetector::isOrdinary(const Alignment& alignment) const {

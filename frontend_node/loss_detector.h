@@ -42,7 +42,8 @@ class LossDetector {
 
   /// Much in the view is not what the keyframe shows there, so somebody may stand before it:
   /// nothing to learn from, nor to make a keyframe of, which would be tracked by who walks away.
-  [[nodiscard]] bool isObstructed(const Alignment& alignment) const;
+  /// `is_wary`: anything out of the ordinary counts.
+  [[nodiscard]] bool isObstructed(const Alignment& alignment, bool is_wary = false) const;
 
   /// The view is what the keyframe shows there, as usual: nobody in it would be taken for a place.
   [[nodiscard]] bool isOrdinary(const Alignment& alignment) const;

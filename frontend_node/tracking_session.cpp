@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "planecloud_slam/frontend_node/wheel_information.h"
+
 namespace planecloud {
 namespace {
 
 /// Frames farther apart than this do not count as time on usable images [s].
 constexpr double kLongestFrameGap = 0.2;
+
+/// Who made the track be lost may still be in the view for so long after it was regained [s].
+constexpr double kWaryTime = 1.0;
 
 /// Keyframes that tell what has moved into a new one: who walks by is gone from a place within as
 /// many.
@@ -20,17 +25,6 @@ Eigen::Isometry3d levelledCamera() {
   Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();
   T_odom_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return T_odom_camera;
-}
-
-/// What the wheels of a floor robot are worth after motion `T`: they slip by some percent, and see
-/// nothing of a tilt.
-Matrix6d wheelInformation(const Eigen::Isometry3d& T) {
-  const double translation = 0.02 + 0.05 * T.translation().norm();
-  const double rotation = 0.02 + 0.05 * rotationAngle(T);
-  Vector6d diagonal;
-  diagonal.head<3>().setConstant(1.0 / (translation * translation));
-  diagonal.tail<3>().setConstant(1.0 / (rotation * rotation));
-  return diagonal.asDiagonal();
 }
 
 }  // namespace
@@ -122,7 +116,7 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   if (seconds > 0.0) motion_.observe(T_reference_last_.inverse() * T_reference_camera, seconds);
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
   brightness_ = alignment.brightness;
-  const bool is_obstructed = loss_.isObstructed(alignment);
+  const bool is_obstructed = loss_.isObstructed(alignment, frame.stamp < wary_until_);
   if (!is_obstructed) loss_.learn(alignment);
   if (loss_.isOrdinary(alignment)) {
     last_good_.set(alignment);
@@ -183,6 +177,7 @@ std::vector<ExpectedPlace> TrackingSession::expectedPlaces(double stamp) {
 }
 
 FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation& found) {
+  wary_until_ = frame.stamp + kWaryTime;
   // Out of the keyframe's sight: a new one begins here.
   if (last_good_.isAt(found)) return accept(frame, last_good_.toKeyframe(found.alignment), true);
   const bool is_elsewhere = found.view != reference_.view;

@@ -91,6 +91,7 @@ class TrackingSession {
   Brightness brightness_;
   double last_stamp_ = 0.0;
   double last_good_stamp_ = 0.0;
+  double wary_until_ = 0.0;
   double usable_lost_ = 0.0;  ///< time lost on usable images [s]
   bool last_was_usable_ = false;
   bool wheels_since_good_ = false;  ///< the wheels spoke ever since the last good frame

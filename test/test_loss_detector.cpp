@@ -89,6 +89,24 @@ TEST(LossDetector, TakesManyDepthsThatDisagreeForAnObstruction) {
   EXPECT_FALSE(detector.isObstructed(alignment));
 }
 
+TEST(LossDetector, AfterALossAnythingOutOfTheOrdinaryIsAnObstruction) {
+  LossDetector detector(LossOptions{});
+  detector.learn(goodAlignment());
+  EXPECT_TRUE(detector.isOrdinary(goodAlignment()));
+  EXPECT_FALSE(detector.isObstructed(goodAlignment(), true));
+  Alignment brighter = goodAlignment();
+  brighter.scale.sigma_grey *= 2.0;
+  Alignment holey = goodAlignment();
+  holey.inliers -= 0.15;
+  for (const Alignment& alignment : {brighter, holey}) {
+    EXPECT_FALSE(detector.isOrdinary(alignment));
+    EXPECT_FALSE(detector.isObstructed(alignment, false));
+    EXPECT_TRUE(detector.isObstructed(alignment, true));
+  }
+  brighter.overlap = 0.3;  // the keyframe has nearly left the view
+  EXPECT_FALSE(detector.isObstructed(brighter, true));
+}
+
 TEST(LossDetector, ImplausibleMotionsAndEntropiesAreNotBelieved) {
   const LossDetector detector(LossOptions{});
   EXPECT_NE(detector.findAlignmentFault(goodAlignment(), {1.0, pose(0.5, 0, 0), 0.033}), "");
