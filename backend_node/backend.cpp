@@ -9,6 +9,7 @@
 
 #include "planecloud_slam/backend_node/closure_consistency.h"
 #include "planecloud_slam/backend_node/closure_verifier.h"
+#include "planecloud_slam/backend_node/coplanarity_detector.h"
 #include "planecloud_slam/backend_node/drift_model.h"
 #include "planecloud_slam/backend_node/join_check.h"
 #include "planecloud_slam/backend_node/keyframe_check.h"
@@ -42,6 +43,7 @@ class Backend::Impl {
         verifier_(options_.loop_closure.verification, options_.icap),
         consistency_(options_.loop_closure.consistency, options_.loop_closure.drift),
         join_check_(options_.loop_closure.consistency, options_.icap),
+        coplanarity_(options_.loop_closure, options_.icap),
         plane_sets_(options_.icap.planes, kPreparedKeyframes) {}
 
   InsertionResult insert(Keyframe keyframe) {
@@ -65,6 +67,7 @@ class Backend::Impl {
     changed();
     ++added_;
     if (options_.loop_closure.candidates.enabled) closeLoops(node, result);
+    if (options_.loop_closure.coplanarity.enabled) findCoplanar(node, *check.planes);
     if (!result.closures.empty()) {
       optimizeAround(result.closures);
       result.optimised = true;
@@ -73,7 +76,7 @@ class Backend::Impl {
   }
 
   void optimize() {
-    countRemoved(map_.graph().optimize().removed.size());
+    countRemoved(map_.graph().optimize().removed);
     optimised();
   }
 
@@ -91,7 +94,7 @@ class Backend::Impl {
     const bool known =
         copy.size() > 0 && copy.size() <= map_.graph().size() && copy.id(0) == map_.graph().id(0);
     if (!known) return;
-    countRemoved(map_.graph().adopt(copy, optimisation.summary()).size());
+    countRemoved(map_.graph().adopt(copy, optimisation.summary()));
     changed();
   }
 
@@ -113,6 +116,7 @@ class Backend::Impl {
     statistics.rejected = rejected_;
     statistics.closures_intra = map_.graph().closures(false);
     statistics.closures_inter = map_.graph().closures(true);
+    statistics.coplanar_edges = map_.graph().coplanarEdges();
     return statistics;
   }
 
@@ -130,8 +134,18 @@ class Backend::Impl {
     changed();
   }
 
-  void countRemoved(std::size_t removed) {
-    if (removed > 0) rejected_["found_false_later"] += removed;
+  void countRemoved(const std::vector<GraphEdge>& removed) {
+    for (const GraphEdge& edge : removed) {
+      if (edge.kind == EdgeKind::kClosure) ++rejected_["found_false_later"];
+    }
+  }
+
+  /// Each of these edges tells too little to be worth an optimisation of its own.
+  void findCoplanar(int node, const PlaneCloud& planes) {
+    for (const GraphEdge& edge : coplanarity_.detect(map_.graph(), map_.records(), node, planes)) {
+      map_.graph().addEdge(edge);
+      settled_ = false;
+    }
   }
 
   /// All that is known so far is in an optimisation of the whole.
@@ -208,6 +222,7 @@ class Backend::Impl {
   ClosureVerifier verifier_;
   ClosureConsistency consistency_;
   JoinCheck join_check_;
+  CoplanarityDetector coplanarity_;
   PlaneSetCache plane_sets_;
   std::map<std::string, std::size_t> rejected_;
   bool settled_ = true;    ///< no closures wait for an optimisation of the whole
