@@ -105,7 +105,6 @@ std::vector<GraphEdge> CoplanarityDetector::detect(const PoseGraph& graph,
   return edges;
 }
 
-/// Parallel surfaces of keyframes just before are as near as those in the same view.
 void CoplanarityDetector::lookBack(const Query& query) {
   const KeyframeRecord& source = query.records[indexOf(query.source)];
   std::vector<FlatSurface>& own = surfaces_[indexOf(query.source)];
@@ -116,6 +115,7 @@ void CoplanarityDetector::lookBack(const Query& query) {
     const bool same =
         id.robot == source.keyframe->id.robot && id.session == source.keyframe->id.session;
     if (!same || source.path - other.path > kLookBack) return;
+    if (query.graph.component(node) != query.graph.component(query.source)) return;
     const Eigen::Isometry3d T_other_source =
         query.graph.pose(node).inverse() * query.graph.pose(query.source);
     for (FlatSurface& earlier : surfaces_[indexOf(node)]) {
@@ -131,11 +131,7 @@ bool CoplanarityDetector::mayPair(const Query& query, int target) const {
   const KeyframeRecord& b = query.records[indexOf(query.source)];
   const bool same_session = a.keyframe->id.robot == b.keyframe->id.robot &&
                             a.keyframe->id.session == b.keyframe->id.session;
-  if (same_session && std::abs(a.path - b.path) < options_.candidates.min_path_gap) return false;
-  const Eigen::Isometry3d T_target_source =
-      query.graph.pose(target).inverse() * query.graph.pose(query.source);
-  return mutualViewOverlap(a.sketch, b.sketch, T_target_source) <
-         options_.candidates.min_view_overlap;
+  return !same_session || std::abs(a.path - b.path) >= options_.candidates.min_path_gap;
 }
 
 std::vector<CoplanarityDetector::Candidate> CoplanarityDetector::propose(const Query& query) const {
@@ -147,13 +143,15 @@ std::vector<CoplanarityDetector::Candidate> CoplanarityDetector::propose(const Q
        query.graph.nodesAround(query.source, options_.coplanarity.max_distance)) {
     if (target != query.source && mayPair(query, target)) targets.push_back(target);
   }
-  const std::vector<double> paths = query.graph.pathLengthsTo(query.source, targets);
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (paths[i] > options_.coplanarity.max_path) continue;
-    for (const FlatSurface& target : surfaces_[indexOf(targets[i])]) {
+  if (targets.empty()) return candidates;
+  const double limit = options_.coplanarity.max_path;
+  const std::vector<double> paths = query.graph.pathLengths(query.source, limit);
+  for (const int node : targets) {
+    const double path = paths[indexOf(node)];
+    for (const FlatSurface& target : surfaces_[indexOf(node)]) {
       for (const FlatSurface& source : own) {
-        const bool sure = target.confirmed && source.confirmed;
-        if (sure) candidates.push_back({targets[i], &target, &source, paths[i], 0.0, {}});
+        const bool sure = path <= limit && target.confirmed && source.confirmed;
+        if (sure) candidates.push_back({node, &target, &source, path, 0.0, {}});
       }
     }
   }
@@ -178,14 +176,22 @@ bool CoplanarityDetector::judge(const Query& query, Candidate& candidate) const 
   const double unknown = kGate * std::sqrt(covariance(0, 0)) + std::abs(pair.residual(0));
   if (std::min(target.clearance, source.clearance) < unknown) return false;
   const Eigen::Isometry3d T_target_source = predicted * expSe3(makeCoplanar(pair, drift));
-  const ViewSketch& target_view = query.records[indexOf(candidate.target)].sketch;
-  const ViewSketch& source_view = query.records[indexOf(query.source)].sketch;
-  if (seesThrough(target_view, moved(source, T_target_source))) return false;
-  if (seesThrough(source_view, moved(target, T_target_source.inverse()))) return false;
+  if (!viewsAllow(query, candidate, T_target_source)) return false;
   const Coplanarity fitted = compareSurfaces(target, source, T_target_source);
   candidate.gain = std::log(covariance.determinant() / fitted.covariance.determinant());
   candidate.edge = makeEdge(query, candidate, T_target_source, fitted);
   return true;
+}
+
+bool CoplanarityDetector::viewsAllow(const Query& query, const Candidate& candidate,
+                                     const Eigen::Isometry3d& T_target_source) const {
+  const ViewSketch& target = query.records[indexOf(candidate.target)].sketch;
+  const ViewSketch& source = query.records[indexOf(query.source)].sketch;
+  if (mutualViewOverlap(target, source, T_target_source) >= options_.candidates.min_view_overlap) {
+    return false;  // a matter of loop closures
+  }
+  return !seesThrough(target, moved(*candidate.source_surface, T_target_source)) &&
+         !seesThrough(source, moved(*candidate.target_surface, T_target_source.inverse()));
 }
 
 GraphEdge CoplanarityDetector::makeEdge(const Query& query, const Candidate& candidate,

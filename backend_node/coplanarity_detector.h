@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "planecloud_slam/backend_node/coplanarity.h"
@@ -48,11 +47,14 @@ class CoplanarityDetector {
 
   /// Compares the surfaces of the source with those of keyframes just before it.
   void lookBack(const Query& query);
+  /// Whether the keyframes lie in one component and far enough apart on their way.
   [[nodiscard]] bool mayPair(const Query& query, int target) const;
   [[nodiscard]] std::vector<Candidate> propose(const Query& query) const;
   /// Completes the candidate; false when it does not hold.
   [[nodiscard]] bool judge(const Query& query, Candidate& candidate) const;
-
+  /// Whether the two views overlap little and contradict each other nowhere.
+  [[nodiscard]] bool viewsAllow(const Query& query, const Candidate& candidate,
+                                const Eigen::Isometry3d& T_target_source) const;
   [[nodiscard]] static GraphEdge makeEdge(const Query& query, const Candidate& candidate,
                                           const Eigen::Isometry3d& T_target_source,
                                           const Coplanarity& fitted);

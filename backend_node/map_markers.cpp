@@ -91,10 +91,9 @@ std::vector<visualization_msgs::Marker> makeEdgeMarkers(const MapSnapshot& snaps
   const Nodes nodes = indexNodes(snapshot);
   const std::map<std::string, RobotColor> colors = robotColors(snapshot);
   const int lines = visualization_msgs::Marker::LINE_LIST;
-  std::vector<visualization_msgs::Marker> markers = {makeMarker("odometry", lines, 0.04),
-                                                     makeMarker("history", lines, 0.008),
-                                                     makeMarker("closures", lines, 0.03),
-                                                     makeMarker("coplanar", lines, 0.015)};
+  std::vector<visualization_msgs::Marker> markers = {
+      makeMarker("odometry", lines, 0.04), makeMarker("history", lines, 0.008),
+      makeMarker("closures", lines, 0.03), makeMarker("coplanar", lines, 0.015)};
   for (const GraphEdge& edge : snapshot.edges) {
     const auto from = nodes.find(edge.from);
     const auto to = nodes.find(edge.to);
