@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostSurfaces = 4;
 constexpr int kMostSeeds = 8;           ///< tiles a surface is grown from
-constexpr int kSmallestTile = 8;        ///< smaller ones know too little of their normals [px]
+constexpr int kSmallestTile = 12;       ///< smaller ones know little and are many [px]
 constexpr int kRefinements = 3;         ///< of a plane and its tiles by turns
 constexpr double kLeastSide = 0.6;      ///< of a surface [m]
 constexpr double kSigmas = 3.0;         ///< a tile may be off its plane
@@ -38,6 +38,7 @@ struct Tile {
   double area = 0.0;          ///< [m^2]
   double tolerance = 0.0;     ///< of its height over a plane it is part of [m]
   double normal_sigma = 0.0;  ///< [rad]
+  double least_cosine = 0.0;  ///< between its normal and that of a plane it is part of [-]
   int pixels = 0;
   bool used = false;
 };
@@ -71,6 +72,7 @@ std::optional<Tile> makeTile(const PlanarTile& planar, const CameraIntrinsics& c
   const double sigma_q = options.depth_noise / std::sqrt(samples);
   tile.tolerance = kUnevenness + d / q * std::hypot(kSigmas * sigma_q, options.depth_bias);
   tile.normal_sigma = d * sigma_q * std::sqrt(6.0 / (du * du) + 6.0 / (dv * dv));
+  tile.least_cosine = std::cos(std::min(kLargestAngle, kLeastAngle + kSigmas * tile.normal_sigma));
   return tile;
 }
 
@@ -114,8 +116,7 @@ class SurfaceFinder {
 
  private:
   static bool parallel(const Tile& tile, const Eigen::Vector3d& normal) {
-    const double angle = std::min(kLargestAngle, kLeastAngle + kSigmas * tile.normal_sigma);
-    return tile.normal.dot(normal) > std::cos(angle);
+    return tile.normal.dot(normal) > tile.least_cosine;
   }
 
   /// How far off the tile is for certain [m].
