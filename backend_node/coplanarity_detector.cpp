@@ -97,10 +97,12 @@ std::vector<GraphEdge> CoplanarityDetector::detect(const PoseGraph& graph,
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
   std::vector<GraphEdge> edges;
-  std::set<const FlatSurface*> taken;  // of the source: each makes one edge at most
+  std::set<const FlatSurface*> ends;  // of the source: each makes one edge at most
   for (Candidate& candidate : candidates) {
     if (static_cast<int>(edges.size()) == options_.coplanarity.max_edges) break;
-    if (taken.insert(candidate.source_surface).second) edges.push_back(std::move(candidate.edge));
+    if (candidate.target_surface->taken || !ends.insert(candidate.source_surface).second) continue;
+    candidate.target_surface->taken = true;
+    edges.push_back(std::move(candidate.edge));
   }
   return edges;
 }
@@ -134,7 +136,7 @@ bool CoplanarityDetector::mayPair(const Query& query, int target) const {
   return !same_session || std::abs(a.path - b.path) >= options_.candidates.min_path_gap;
 }
 
-std::vector<CoplanarityDetector::Candidate> CoplanarityDetector::propose(const Query& query) const {
+std::vector<CoplanarityDetector::Candidate> CoplanarityDetector::propose(const Query& query) {
   const std::vector<FlatSurface>& own = surfaces_[indexOf(query.source)];
   std::vector<Candidate> candidates;
   if (own.empty()) return candidates;
@@ -148,7 +150,8 @@ std::vector<CoplanarityDetector::Candidate> CoplanarityDetector::propose(const Q
   const std::vector<double> paths = query.graph.pathLengths(query.source, limit);
   for (const int node : targets) {
     const double path = paths[indexOf(node)];
-    for (const FlatSurface& target : surfaces_[indexOf(node)]) {
+    for (FlatSurface& target : surfaces_[indexOf(node)]) {
+      if (target.taken) continue;
       for (const FlatSurface& source : own) {
         const bool sure = path <= limit && target.confirmed && source.confirmed;
         if (sure) candidates.push_back({node, &target, &source, path, 0.0, {}});

@@ -38,7 +38,7 @@ class CoplanarityDetector {
   };
   struct Candidate {
     int target = 0;
-    const FlatSurface* target_surface = nullptr;
+    FlatSurface* target_surface = nullptr;
     const FlatSurface* source_surface = nullptr;
     double path = 0.0;  ///< of measurements between the keyframes [m]
     double gain = 0.0;  ///< how much surer the three directions would become [-]
@@ -49,7 +49,7 @@ class CoplanarityDetector {
   void lookBack(const Query& query);
   /// Whether the keyframes lie in one component and far enough apart on their way.
   [[nodiscard]] bool mayPair(const Query& query, int target) const;
-  [[nodiscard]] std::vector<Candidate> propose(const Query& query) const;
+  [[nodiscard]] std::vector<Candidate> propose(const Query& query);
   /// Completes the candidate; false when it does not hold.
   [[nodiscard]] bool judge(const Query& query, Candidate& candidate) const;
   /// Whether the two views overlap little and contradict each other nowhere.

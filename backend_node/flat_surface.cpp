@@ -17,12 +17,14 @@ namespace planecloud {
 namespace {
 
 constexpr std::size_t kMostSurfaces = 4;
-constexpr int kMostSeeds = 8;           ///< tiles a surface is grown from
-constexpr int kSmallestTile = 12;       ///< smaller ones know little and are many [px]
-constexpr int kRefinements = 3;         ///< of a plane and its tiles by turns
-constexpr double kLeastSide = 0.6;      ///< of a surface [m]
-constexpr double kSigmas = 3.0;         ///< a tile may be off its plane
-constexpr double kUnevenness = 0.005;   ///< of a flat surface [m]
+constexpr int kMostSeeds = 8;          ///< tiles a surface is grown from
+constexpr int kSmallestTile = 12;      ///< smaller ones know little and are many [px]
+constexpr int kRefinements = 3;        ///< of a plane and its tiles by turns
+constexpr double kLeastSide = 0.6;     ///< of a surface [m]
+constexpr double kSigmas = 3.0;        ///< a tile may be off its plane
+constexpr double kUnevenness = 0.005;  ///< of a flat surface [m]
+/// Of a tile's height [m]: beyond, a door could not be told from the wall it is set in.
+constexpr double kLargestTolerance = 0.025;
 constexpr double kMeanTilt = 0.01;      ///< of all tiles against their common plane [rad]
 constexpr double kLeastAngle = 0.05;    ///< likewise of normals [rad]
 constexpr double kLargestAngle = 0.25;  ///< however uncertain a normal is [rad]
@@ -71,6 +73,7 @@ std::optional<Tile> makeTile(const PlanarTile& planar, const CameraIntrinsics& c
   tile.information = samples / (options.depth_noise * options.depth_noise) * moments;
   const double sigma_q = options.depth_noise / std::sqrt(samples);
   tile.tolerance = kUnevenness + d / q * std::hypot(kSigmas * sigma_q, options.depth_bias);
+  if (tile.tolerance > kLargestTolerance) return std::nullopt;
   tile.normal_sigma = d * sigma_q * std::sqrt(6.0 / (du * du) + 6.0 / (dv * dv));
   tile.least_cosine = std::cos(std::min(kLargestAngle, kLeastAngle + kSigmas * tile.normal_sigma));
   return tile;

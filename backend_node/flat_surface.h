@@ -25,6 +25,7 @@ struct FlatSurface {
   /// Least distance of other tiles, as good as parallel, from the plane; infinite: none [m].
   double clearance = 0.0;
   bool confirmed = false;  ///< by another keyframe
+  bool taken = false;      ///< an edge begins here; a second one would repeat its error
 };
 
 /// The large flat surfaces of a keyframe, largest in the image first: at least `min_area` [m^2],
