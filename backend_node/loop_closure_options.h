@@ -115,6 +115,9 @@ struct ClosureConsistencyOptions {
 };
 
 /// Edges between keyframes whose views hardly overlap but which see two parts of one flat surface.
+/// Worth, in the rendered hallway of seeds 1, 2 and 3: ATE 3.1, 4.4 and 3.7 mm with loop closures
+/// become 2.7, 2.9 and 3.0 mm; without closures 12.7, 9.0 and 9.4 mm become 14.2, 4.1 and 4.5 mm.
+/// A desk (fr1/xyz) has no such surface. Off: no recording of a real building has judged it.
 struct CoplanarityOptions {
   bool enabled = false;
   double min_area = 1.0;      ///< of either part [m^2], [0.1, 100]
