@@ -15,7 +15,7 @@
 namespace planecloud {
 
 /// Finds keyframes that see another part of a flat surface a new one sees, where their views
-/// overlap too little for a loop closure (paper sec. 3.4; ALGORITHMS 5.2 d). A pair counts only
+/// overlap too little for a loop closure (paper sec. 4.4). A pair counts only
 /// where nothing else can be meant: keyframes just before or after confirm both parts, none of them
 /// saw another parallel surface within what is not known of the relative pose, and neither of the
 /// two saw through the part that the other one sees.
