@@ -17,7 +17,7 @@ namespace planecloud {
 namespace {
 
 constexpr std::size_t kMostSurfaces = 4;
-constexpr int kMostSeeds = 8;          ///< tiles a surface is grown from
+constexpr int kMostSeeds = 16;         ///< tiles a surface is grown from
 constexpr int kSmallestTile = 12;      ///< smaller ones know little and are many [px]
 constexpr int kRefinements = 3;        ///< of a plane and its tiles by turns
 constexpr double kLeastSide = 0.6;     ///< of a surface [m]
@@ -97,7 +97,8 @@ class SurfaceFinder {
     std::vector<std::pair<int, FlatSurface>> found;  // with pixels
     int seeds = 0;
     for (Tile& seed : tiles_) {
-      if (seed.used || found.size() == kMostSurfaces || seeds++ == kMostSeeds) continue;
+      if (seed.used) continue;
+      if (found.size() == kMostSurfaces || seeds++ == kMostSeeds) break;
       const std::vector<Tile*> members = grow(seed);
       for (Tile* member : members) member->used = true;
       seed.used = true;
