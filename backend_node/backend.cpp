@@ -9,6 +9,7 @@
 
 #include "planecloud_slam/backend_node/closure_consistency.h"
 #include "planecloud_slam/backend_node/closure_verifier.h"
+#include "planecloud_slam/backend_node/coplanarity_detector.h"
 #include "planecloud_slam/backend_node/drift_model.h"
 #include "planecloud_slam/backend_node/join_check.h"
 #include "planecloud_slam/backend_node/keyframe_check.h"
@@ -27,8 +28,6 @@ constexpr std::size_t kPreparedKeyframes = 24;
 /// Of the map: how much it grows before it is worth to optimise it as a whole again.
 constexpr double kLeastGrowth = 0.02;
 
-constexpr char kFoundFalseLater[] = "found_false_later";
-
 BackendOptions checked(BackendOptions options) {
   options.check();
   return options;
@@ -45,6 +44,7 @@ class Backend::Impl {
         verifier_(options_.loop_closure.verification, options_.icap),
         consistency_(options_.loop_closure.consistency, options_.loop_closure.drift),
         join_check_(options_.loop_closure.consistency, options_.icap),
+        coplanarity_(options_.loop_closure, options_.icap),
         plane_sets_(options_.icap.planes, kPreparedKeyframes) {}
 
   InsertionResult insert(Keyframe keyframe) {
@@ -68,6 +68,7 @@ class Backend::Impl {
     changed();
     ++added_;
     if (options_.loop_closure.candidates.enabled) closeLoops(node, result);
+    if (options_.loop_closure.coplanarity.enabled) findCoplanar(node, *check.planes);
     if (!result.closures.empty()) {
       optimizeAround(result.closures);
       result.optimised = true;
@@ -76,7 +77,7 @@ class Backend::Impl {
   }
 
   void optimize() {
-    rejected_.add(map_.graph().optimize().removed, kFoundFalseLater);
+    countRemoved(map_.graph().optimize().removed);
     optimised();
   }
 
@@ -94,7 +95,7 @@ class Backend::Impl {
     const bool known =
         copy.size() > 0 && copy.size() <= map_.graph().size() && copy.id(0) == map_.graph().id(0);
     if (!known) return;
-    rejected_.add(map_.graph().adopt(copy, optimisation.summary()), kFoundFalseLater);
+    countRemoved(map_.graph().adopt(copy, optimisation.summary()));
     changed();
   }
 
@@ -121,6 +122,7 @@ class Backend::Impl {
     statistics.rejected = rejected_.counts();
     statistics.closures_intra = map_.graph().closures(false);
     statistics.closures_inter = map_.graph().closures(true);
+    statistics.coplanar_edges = map_.graph().coplanarEdges();
     return statistics;
   }
 
@@ -136,6 +138,20 @@ class Backend::Impl {
     map_.graph().optimizeAround(ends);
     settled_ = false;
     changed();
+  }
+
+  void countRemoved(const std::vector<GraphEdge>& removed) {
+    for (const GraphEdge& edge : removed) {
+      if (edge.kind == EdgeKind::kClosure) rejected_.add({edge.from, edge.to, "found_false_later"});
+    }
+  }
+
+  /// Each of these edges tells too little to be worth an optimisation of its own.
+  void findCoplanar(int node, const PlaneCloud& planes) {
+    for (const GraphEdge& edge : coplanarity_.detect(map_.graph(), map_.records(), node, planes)) {
+      map_.graph().addEdge(edge);
+      settled_ = false;
+    }
   }
 
   /// All that is known so far is in an optimisation of the whole.
@@ -214,6 +230,7 @@ class Backend::Impl {
   ClosureVerifier verifier_;
   ClosureConsistency consistency_;
   JoinCheck join_check_;
+  CoplanarityDetector coplanarity_;
   PlaneSetCache plane_sets_;
   RejectedClosures rejected_;
   bool settled_ = true;    ///< no closures wait for an optimisation of the whole

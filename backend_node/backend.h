@@ -37,6 +37,7 @@ struct BackendStatistics {
   std::size_t keyframes = 0;
   std::size_t closures_intra = 0;
   std::size_t closures_inter = 0;
+  std::size_t coplanar_edges = 0;
   std::map<std::string, std::size_t> rejected;  ///< closures by reason
   int components = 0;
 };

@@ -72,11 +72,20 @@ void ClosureConsistencyOptions::check() const {
   checkRange("loop_closure/consistency/max_pending", max_pending, 1, 100000);
 }
 
+void CoplanarityOptions::check() const {
+  checkRange("loop_closure/coplanarity/min_area", min_area, 0.1, 100.0);
+  checkRange("loop_closure/coplanarity/max_distance", max_distance, 0.5, 50.0);
+  checkRange("loop_closure/coplanarity/max_path", max_path, 0.0, 1e3);
+  checkRange("loop_closure/coplanarity/max_edges", max_edges, 1, 10);
+  checkRange("loop_closure/coplanarity/max_inconsistency", max_inconsistency, 1e-3, 1e3);
+}
+
 void LoopClosureOptions::check() const {
   candidates.check();
   drift.check();
   verification.check();
   consistency.check();
+  coplanarity.check();
 }
 
 void PoseGraphOptions::check() const {

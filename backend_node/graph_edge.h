@@ -13,7 +13,13 @@ enum class EdgeKind {
   kOdometry,  ///< to the keyframe it was tracked from, from the frontend
   kHistory,   ///< to an earlier keyframe, from the frontend
   kClosure,   ///< found and verified by the backend
+  kCoplanar,  ///< two parts of one flat surface, found by the backend; knows three directions
 };
+
+/// Whether such an edge may be found false and leave again, as what a frontend measured may not.
+[[nodiscard]] constexpr bool isMadeByBackend(EdgeKind kind) {
+  return kind == EdgeKind::kClosure || kind == EdgeKind::kCoplanar;
+}
 
 /// An edge of the graph as others see it.
 struct GraphEdge {

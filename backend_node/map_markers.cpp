@@ -35,6 +35,7 @@ std_msgs::ColorRGBA makeColor(const RobotColor& color, float alpha) {
 }
 
 const std_msgs::ColorRGBA kHistoryColor = makeColor({150, 150, 150}, 0.5F);
+const std_msgs::ColorRGBA kCoplanarColor = makeColor({30, 160, 170}, 0.7F);
 const std_msgs::ColorRGBA kClosureColor = makeColor({220, 20, 40}, 1.0F);
 const std_msgs::ColorRGBA kInterRobotColor = makeColor({255, 0, 200}, 1.0F);
 const std_msgs::ColorRGBA kRejectedColor = makeColor({220, 20, 40}, 0.6F);
@@ -83,6 +84,7 @@ std_msgs::ColorRGBA colorOf(const GraphEdge& edge,
                             const std::map<std::string, RobotColor>& colors) {
   if (edge.kind == EdgeKind::kOdometry) return makeColor(colors.at(edge.from.robot), 1.0F);
   if (edge.kind == EdgeKind::kHistory) return kHistoryColor;
+  if (edge.kind == EdgeKind::kCoplanar) return kCoplanarColor;
   return edge.inter_robot ? kInterRobotColor : kClosureColor;
 }
 
@@ -91,9 +93,9 @@ std::vector<visualization_msgs::Marker> makeEdgeMarkers(const MapSnapshot& snaps
   const Nodes nodes = indexNodes(snapshot);
   const std::map<std::string, RobotColor> colors = robotColors(snapshot);
   const int lines = visualization_msgs::Marker::LINE_LIST;
-  std::vector<visualization_msgs::Marker> markers = {makeMarker("odometry", lines, 0.04),
-                                                     makeMarker("history", lines, 0.008),
-                                                     makeMarker("closures", lines, 0.03)};
+  std::vector<visualization_msgs::Marker> markers = {
+      makeMarker("odometry", lines, 0.04), makeMarker("history", lines, 0.008),
+      makeMarker("closures", lines, 0.03), makeMarker("coplanar", lines, 0.015)};
   for (const GraphEdge& edge : snapshot.edges) {
     const auto from = nodes.find(edge.from);
     const auto to = nodes.find(edge.to);

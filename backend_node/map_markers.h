@@ -54,7 +54,8 @@ class PlaneMapMarkers {
 };
 
 /// The pose graph for rviz: keyframes as spheres, edges as lines; odometry in the robot's colour,
-/// the frontend's other edges thin, closures bright (red, between robots magenta).
+/// the frontend's other edges thin, closures bright (red, between robots magenta), coplanar ones
+/// teal.
 [[nodiscard]] visualization_msgs::MarkerArray makeGraphMarkers(const MapSnapshot& snapshot,
                                                                const std_msgs::Header& header);
 

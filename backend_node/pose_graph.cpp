@@ -75,6 +75,7 @@ void PoseGraph::addEdge(const GraphEdge& edge) {
 }
 
 std::size_t* PoseGraph::counterOf(const GraphEdge& edge) {
+  if (edge.kind == EdgeKind::kCoplanar) return &coplanar_;
   if (edge.kind != EdgeKind::kClosure) return nullptr;
   return edge.inter_robot ? &closures_inter_ : &closures_intra_;
 }
@@ -113,11 +114,11 @@ double PoseGraph::squaredError(const GraphEdge& edge) const {
   return cost.residual(pose(numbers_.at(edge.from)), pose(numbers_.at(edge.to))).squaredNorm();
 }
 
-std::optional<std::size_t> PoseGraph::worstClosure() const {
+std::optional<std::size_t> PoseGraph::worstOfBackend() const {
   std::optional<std::size_t> worst;
   double worst_error = options_.removal_distance;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    if (edges_.kind(i) != EdgeKind::kClosure) continue;
+    if (!isMadeByBackend(edges_.kind(i))) continue;
     const double error = squaredError(edges_[i]);
     if (error <= worst_error) continue;
     worst_error = error;
@@ -196,7 +197,7 @@ std::vector<GraphEdge> PoseGraph::adopt(const PoseGraph& copy, const Optimisatio
   for (const GraphEdge& gone : summary.removed) {
     for (const int e : edges_of_[index(numbers_.at(gone.from))]) {
       const GraphEdge edge = edges_[index(e)];
-      if (edge.kind != EdgeKind::kClosure || edge.from != gone.from || edge.to != gone.to) continue;
+      if (edge.kind != gone.kind || edge.from != gone.from || edge.to != gone.to) continue;
       removed.push_back(edge);
       eraseEdge(index(e));
       break;
@@ -210,7 +211,7 @@ OptimisationSummary PoseGraph::optimize() {
   OptimisationSummary summary;
   if (edges_.empty()) return summary;
   solve(summary);
-  while (const std::optional<std::size_t> worst = worstClosure()) {
+  while (const std::optional<std::size_t> worst = worstOfBackend()) {
     summary.removed.push_back(edges_[*worst]);
     eraseEdge(*worst);
     findComponents();

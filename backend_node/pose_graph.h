@@ -21,7 +21,7 @@ struct OptimisationSummary {
   int iterations = 0;
   double initial_cost = 0.0;  ///< half the sum of squared residuals, robust kernel applied
   double final_cost = 0.0;
-  std::vector<GraphEdge> removed;  ///< closures found false and taken out
+  std::vector<GraphEdge> removed;  ///< closures and coplanar edges found false and taken out
 };
 
 /// Poses of keyframes and the measurements between them (paper sec. 3.1). Nodes are numbered in the
@@ -54,6 +54,7 @@ class PoseGraph {
   [[nodiscard]] std::size_t closures(bool inter_robot) const {
     return inter_robot ? closures_inter_ : closures_intra_;
   }
+  [[nodiscard]] std::size_t coplanarEdges() const { return coplanar_; }
   /// Positions in `edges` of those at `node`.
   [[nodiscard]] const std::vector<int>& edgesOf(int node) const {
     return edges_of_.at(static_cast<std::size_t>(node));
@@ -83,11 +84,11 @@ class PoseGraph {
 
   /// Takes over what became of `copy`, a copy of this graph that was optimised while this one went
   /// on: poses, closures found false. Nodes added since keep their place to the older node they
-  /// hang on. Returns the closures that left.
+  /// hang on. Returns the edges that left.
   std::vector<GraphEdge> adopt(const PoseGraph& copy, const OptimisationSummary& summary);
 
-  /// Optimises all components; a closure that then disagrees by more than `removal_distance`
-  /// leaves, the worst first, each time followed by another optimisation.
+  /// Optimises all components; a closure or coplanar edge that then disagrees by more than
+  /// `removal_distance` leaves, the worst first, each time followed by another optimisation.
   OptimisationSummary optimize();
 
  private:
@@ -105,16 +106,17 @@ class PoseGraph {
 
   [[nodiscard]] const Node& at(int node) const { return nodes_.at(static_cast<std::size_t>(node)); }
   void setPose(int node, const Eigen::Isometry3d& T_map_camera);
-  /// Where closures of its kind are counted, null for other edges.
+  /// Where edges of its kind are counted, null for the frontend's.
   [[nodiscard]] std::size_t* counterOf(const GraphEdge& edge);
   void eraseEdge(std::size_t edge);
+  /// Coplanar edges alone hold no component together: those left between two are taken out.
   void findComponents();
   [[nodiscard]] std::vector<int> window(const std::vector<int>& seeds) const;
   /// Calls `settle(node, length)` in order of the length of the way from `node` until it says no.
   template <typename Settle>
   void walk(int node, Settle&& settle) const;
   void solve(OptimisationSummary& summary);
-  [[nodiscard]] std::optional<std::size_t> worstClosure() const;
+  [[nodiscard]] std::optional<std::size_t> worstOfBackend() const;
 
   PoseGraphOptions options_;
   std::vector<Node> nodes_;
@@ -124,6 +126,7 @@ class PoseGraph {
   std::vector<std::vector<int>> edges_of_;  ///< of each node, positions in `edges_`
   std::size_t closures_intra_ = 0;
   std::size_t closures_inter_ = 0;
+  std::size_t coplanar_ = 0;
   GraphComponents components_;
   PlaceGrid places_;
 };

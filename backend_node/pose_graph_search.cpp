@@ -29,12 +29,16 @@ void PoseGraph::findComponents() {
       const int node = open.back();
       open.pop_back();
       for (const int e : edges_of_[indexOf(node)]) {
+        if (edges_.kind(indexOf(e)) == EdgeKind::kCoplanar) continue;
         const int next = ends_[indexOf(e)].opposite(node);
         if (labels[indexOf(next)] >= 0) continue;
         labels[indexOf(next)] = root;
         open.push_back(next);
       }
     }
+  }
+  for (std::size_t e = edges_.size(); e-- > 0;) {
+    if (labels[indexOf(ends_[e].from)] != labels[indexOf(ends_[e].to)]) eraseEdge(e);
   }
   components_.assign(labels);
 }

@@ -154,7 +154,7 @@ std::unique_ptr<ceres::LossFunction> makeKernel(const PoseGraphOptions& options)
 
 /// What tracking's edges do not know of their own error.
 Matrix6d effectiveInformation(const GraphEdge& edge, const PoseGraphOptions& options) {
-  if (edge.kind == EdgeKind::kClosure) return edge.information;
+  if (isMadeByBackend(edge.kind)) return edge.information;
   return withErrorFloor(edge.information, options.odometry_translation_floor,
                         options.odometry_rotation_floor);
 }

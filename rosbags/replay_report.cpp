@@ -142,6 +142,7 @@ nlohmann::ordered_json makeReport(const JudgedReplay& replay) {
                   {{"intra", result.statistics.closures_intra},
                    {"inter", result.statistics.closures_inter},
                    {"rejected", countRejected(result.statistics)}}},
+                 {"coplanar_edges", result.statistics.coplanar_edges},
                  {"components", result.map->components},
                  {"optimize_ms", milliseconds(result.optimize_times)},
                  {"realtime_factor", realtimeFactor(result)},

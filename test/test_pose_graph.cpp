@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "planecloud_slam/backend_node/pose_graph.h"
@@ -202,6 +203,36 @@ TEST(PoseGraph, OfTwoLinksThatContradictOneGoesAndTheComponentHolds) {
   EXPECT_EQ(graph.optimize().removed.size(), 1u);
   EXPECT_EQ(graph.components(), 1);
   EXPECT_EQ(graph.edges().size(), 3u);
+}
+
+TEST(PoseGraph, CoplanarEdgesHoldNoComponentTogether) {
+  PoseGraph graph{PoseGraphOptions()};
+  for (int i = 0; i < 4; ++i) graph.addNode(idOf(i), Eigen::Isometry3d::Identity());
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
+  graph.addEdge(edgeBetween(idOf(0), idOf(1), same));
+  graph.addEdge(edgeBetween(idOf(2), idOf(3), same));
+  const Eigen::Isometry3d far(Eigen::Translation3d(4.0, 0.0, 0.0));
+  graph.addEdge(edgeBetween(idOf(0), idOf(2), far, EdgeKind::kClosure));
+  for (const auto& [from, to] : {std::pair(0, 2), {0, 3}, {1, 2}, {1, 3}}) {
+    graph.addEdge(edgeBetween(idOf(from), idOf(to), same, EdgeKind::kCoplanar));
+  }
+  EXPECT_EQ(graph.coplanarEdges(), 4u);
+  EXPECT_EQ(graph.closures(false), 1u);
+  // All four contradict the closure, which leaves and they with it.
+  EXPECT_EQ(graph.optimize().removed.size(), 1u);
+  EXPECT_EQ(graph.closures(false), 0u);
+  EXPECT_EQ(graph.coplanarEdges(), 0u);
+  EXPECT_EQ(graph.components(), 2);
+  EXPECT_EQ(graph.edges().size(), 2u);
+}
+
+TEST(PoseGraph, ThrowsAFalseCoplanarEdgeOutAgain) {
+  const std::vector<Eigen::Isometry3d> truth = circle(40);
+  PoseGraph graph = noisyLoop(truth);
+  const Eigen::Isometry3d wrong(Eigen::Translation3d(0.0, 1.5, 0.0));
+  graph.addEdge(edgeBetween(idOf(10), idOf(30), wrong, EdgeKind::kCoplanar));
+  EXPECT_EQ(graph.optimize().removed.size(), 1u);
+  EXPECT_EQ(graph.coplanarEdges(), 0u);
 }
 
 TEST(PoseGraph, KeepsRotationsOrthonormalHoweverOftenAComponentMoves) {

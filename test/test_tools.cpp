@@ -146,7 +146,8 @@ TEST_F(ToolsTest, ReplayReportsItsKeys) {
   for (const char* key : {"intra", "inter", "rejected"}) {
     EXPECT_TRUE(report.at("loop_closures").contains(key)) << key;
   }
-  for (const char* key : {"components", "optimize_ms", "realtime_factor", "peak_rss_mb"}) {
+  for (const char* key :
+       {"coplanar_edges", "components", "optimize_ms", "realtime_factor", "peak_rss_mb"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   for (const char* key : {"ate_rmse_m", "odometry_ate_rmse_m", "closures_false",
