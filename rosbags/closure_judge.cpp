@@ -74,7 +74,7 @@ std::set<KeyframeId> findKeyframesWithPartner(const std::vector<TrueKeyframe>& k
 
 }  // namespace
 
-ClosureVerdict judgeClosure(const GraphEdge& closure, const Eigen::Isometry3d& T_from_to_truth) {
+ClosureTruth judgeClosure(const GraphEdge& closure, const Eigen::Isometry3d& T_from_to_truth) {
   const Eigen::Isometry3d T_error = closure.T_from_to.inverse() * T_from_to_truth;
   Vector6d limits;
   limits << Eigen::Vector3d::Constant(kTranslationLimit), Eigen::Vector3d::Constant(kRotationLimit);
@@ -93,7 +93,7 @@ ClosureVerdict judgeClosure(const GraphEdge& closure, const Eigen::Isometry3d& T
     known += direction * direction.dot(scaled_error);
   }
   const bool wrong = known.head<3>().norm() > 1.0 || known.tail<3>().norm() > 1.0;
-  return wrong ? ClosureVerdict::kFalse : ClosureVerdict::kTrue;
+  return wrong ? ClosureTruth::kFalse : ClosureTruth::kTrue;
 }
 
 ClosureJudgement judgeClosures(const MapSnapshot& map, const std::vector<RobotTruth>& truths) {
@@ -112,8 +112,8 @@ ClosureJudgement judgeClosures(const MapSnapshot& map, const std::vector<RobotTr
     if (from != poses.end() && to != poses.end()) {
       judged.verdict = judgeClosure(edge, from->second.inverse() * to->second);
     }
-    if (judged.verdict == ClosureVerdict::kFalse) ++judgement.false_closures;
-    if (judged.verdict == ClosureVerdict::kTrue) closed.insert({edge.from, edge.to});
+    if (judged.verdict == ClosureTruth::kFalse) ++judgement.false_closures;
+    if (judged.verdict == ClosureTruth::kTrue) closed.insert({edge.from, edge.to});
     judgement.closures.push_back(std::move(judged));
   }
   for (const KeyframeId& id : findKeyframesWithPartner(keyframes)) {

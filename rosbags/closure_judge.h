@@ -12,7 +12,7 @@
 namespace planecloud {
 
 /// What ground truth says of a loop closure.
-enum class ClosureVerdict {
+enum class ClosureTruth {
   kTrue,
   kFalse,    ///< off by more than 0.1 m or 3 degrees where it claims to know
   kUnknown,  ///< one of its keyframes has no ground truth
@@ -21,13 +21,13 @@ enum class ClosureVerdict {
 /// The verdict on measured `T_from_to` against the true one. Only the directions count in which
 /// `information` (tangent space at `to`) gives a standard deviation below ten times the limits:
 /// a closure along a corridor may say nothing of the corridor's axis.
-[[nodiscard]] ClosureVerdict judgeClosure(const GraphEdge& closure,
-                                          const Eigen::Isometry3d& T_from_to_truth);
+[[nodiscard]] ClosureTruth judgeClosure(const GraphEdge& closure,
+                                        const Eigen::Isometry3d& T_from_to_truth);
 
 /// A closure of the map and what it is worth.
 struct JudgedClosure {
   GraphEdge edge;
-  ClosureVerdict verdict = ClosureVerdict::kUnknown;
+  ClosureTruth verdict = ClosureTruth::kUnknown;
 };
 
 /// Closures of a map against ground truth.

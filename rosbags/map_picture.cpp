@@ -198,7 +198,7 @@ class MapPainter {
       const auto from = places.find(closure.edge.from);
       const auto to = places.find(closure.edge.to);
       if (from == places.end() || to == places.end()) continue;
-      const PlanStroke stroke = closureStroke(closure.verdict == ClosureVerdict::kFalse);
+      const PlanStroke stroke = closureStroke(closure.verdict == ClosureTruth::kFalse);
       canvas.drawLine({from->second, to->second}, stroke);
       canvas.drawDisc(from->second, 2.2, stroke.color);
       canvas.drawDisc(to->second, 2.2, stroke.color);
@@ -217,7 +217,7 @@ class MapPainter {
     bool has_closure = false;
     bool has_false_closure = false;
     for (const JudgedClosure& closure : picture_.closures) {
-      const bool is_false = closure.verdict == ClosureVerdict::kFalse;
+      const bool is_false = closure.verdict == ClosureTruth::kFalse;
       has_closure = has_closure || !is_false;
       has_false_closure = has_false_closure || is_false;
     }

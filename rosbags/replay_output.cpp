@@ -91,7 +91,7 @@ MapPicture makePicture(const JudgedReplay& replay) {
   }
   for (const GraphEdge& edge : replay.result.map->edges) {
     if (edge.kind == EdgeKind::kClosure) {
-      picture.closures.push_back({edge, ClosureVerdict::kUnknown});
+      picture.closures.push_back({edge, ClosureTruth::kUnknown});
     }
   }
   return picture;

@@ -34,12 +34,12 @@ const Matrix6d kPrecise = 1e4 * Matrix6d::Identity();  // 1 cm, 0.6 degrees
 
 TEST(ClosureJudge, AllowsTenCentimetresAndThreeDegrees) {
   const Eigen::Isometry3d T = pose(1.0, 0.2, -0.5, 0.7);
-  EXPECT_EQ(judgeClosure(closure(T * pose(0.09, 0, 0, 0), kPrecise), T), ClosureVerdict::kTrue);
-  EXPECT_EQ(judgeClosure(closure(T * pose(0.11, 0, 0, 0), kPrecise), T), ClosureVerdict::kFalse);
+  EXPECT_EQ(judgeClosure(closure(T * pose(0.09, 0, 0, 0), kPrecise), T), ClosureTruth::kTrue);
+  EXPECT_EQ(judgeClosure(closure(T * pose(0.11, 0, 0, 0), kPrecise), T), ClosureTruth::kFalse);
   EXPECT_EQ(judgeClosure(closure(T * pose(0, 0, 0, 2.9 * kDegree), kPrecise), T),
-            ClosureVerdict::kTrue);
+            ClosureTruth::kTrue);
   EXPECT_EQ(judgeClosure(closure(T * pose(0, 0, 0, 3.1 * kDegree), kPrecise), T),
-            ClosureVerdict::kFalse);
+            ClosureTruth::kFalse);
 }
 
 TEST(ClosureJudge, ForgivesWhatAClosureDoesNotClaimToKnow) {
@@ -48,9 +48,9 @@ TEST(ClosureJudge, ForgivesWhatAClosureDoesNotClaimToKnow) {
   corridor.row(2).setZero();
   corridor.col(2).setZero();
   const Eigen::Isometry3d slid = T * pose(0, 0, 4.0, 0);
-  EXPECT_EQ(judgeClosure(closure(slid, kPrecise), T), ClosureVerdict::kFalse);
-  EXPECT_EQ(judgeClosure(closure(slid, corridor), T), ClosureVerdict::kTrue);
-  EXPECT_EQ(judgeClosure(closure(slid * pose(0.2, 0, 0, 0), corridor), T), ClosureVerdict::kFalse);
+  EXPECT_EQ(judgeClosure(closure(slid, kPrecise), T), ClosureTruth::kFalse);
+  EXPECT_EQ(judgeClosure(closure(slid, corridor), T), ClosureTruth::kTrue);
+  EXPECT_EQ(judgeClosure(closure(slid * pose(0.2, 0, 0, 0), corridor), T), ClosureTruth::kFalse);
 }
 
 TEST(ClosureJudge, ALongSlideDoesNotTurnASmallRotationIntoAFault) {
@@ -60,9 +60,9 @@ TEST(ClosureJudge, ALongSlideDoesNotTurnASmallRotationIntoAFault) {
   corridor.col(2).setZero();
   EXPECT_EQ(
       judgeClosure(closure(T * pose(0, 0, 6.0, 0) * pose(0, 0, 0, -2.0 * kDegree), corridor), T),
-      ClosureVerdict::kFalse)
+      ClosureTruth::kFalse)
       << "6 m at 2 degrees are 21 cm across at the keyframe's own place";
-  EXPECT_EQ(judgeClosure(closure(T * pose(0, 0, 6.0, 0), corridor), T), ClosureVerdict::kTrue);
+  EXPECT_EQ(judgeClosure(closure(T * pose(0, 0, 6.0, 0), corridor), T), ClosureTruth::kTrue);
 }
 
 /// A robot that sees a wall, turns away from it and sees it again a minute later.
@@ -131,7 +131,7 @@ TEST_F(ClosureJudgementTest, WithoutGroundTruthNothingIsJudged) {
   close(pose(0.3, 0, 0, 0));
   const ClosureJudgement judgement = judgeClosures(map_, {});
   ASSERT_EQ(judgement.closures.size(), 1U);
-  EXPECT_EQ(judgement.closures[0].verdict, ClosureVerdict::kUnknown);
+  EXPECT_EQ(judgement.closures[0].verdict, ClosureTruth::kUnknown);
   EXPECT_EQ(judgement.false_closures, 0U);
   EXPECT_EQ(judgement.possible, 0U);
 }

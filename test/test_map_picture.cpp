@@ -63,7 +63,7 @@ TEST(MapPicture, ClosuresAreDrawnAndFalseOnesInRed) {
   JudgedClosure closure;
   closure.edge.from = map.nodes[0].keyframe->id;
   closure.edge.to = map.nodes[11].keyframe->id;
-  closure.verdict = ClosureVerdict::kFalse;
+  closure.verdict = ClosureTruth::kFalse;
   picture.closures.push_back(closure);
   const cv::Mat with = drawMap(map, picture);
   ASSERT_EQ(with.size(), without.size());
