@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "frame_set.h"
 #include "planecloud_slam/rosbags/hallway_recording.h"
+#include "recorded_depth.h"
 #include "tracking_trials.h"
 
 namespace planecloud {
@@ -50,8 +54,8 @@ TrialOutcome run(const Trial& trial) {
   return judgeTrial(trial, results, stamps);
 }
 
-TEST(TrackingTrials, LossIsNoticedAndEndsSoon) {
-  for (const Trial& trial : makeTrials(hallway(), kSeed)) {
+void expectNoticedAndEndedSoon(const FrameSet& set) {
+  for (const Trial& trial : makeTrials(set, kSeed)) {
     const TrialOutcome outcome = run(trial);
     EXPECT_EQ(outcome.wrong, 0U) << trial.name << ": " << outcome.worst << " m";
     EXPECT_EQ(outcome.blind_good, 0U) << trial.name;
@@ -59,6 +63,15 @@ TEST(TrackingTrials, LossIsNoticedAndEndsSoon) {
     EXPECT_LE(outcome.regained_after, 1.0) << trial.name;
     EXPECT_TRUE(outcome.same_segment) << trial.name;
   }
+}
+
+TEST(TrackingTrials, LossIsNoticedAndEndsSoon) { expectNoticedAndEndedSoon(hallway()); }
+
+TEST(TrackingTrials, LossInARecordingIsNoticedAndEndsSoon) {
+  const std::filesystem::path folder = recordedDataFolder() / "tum_fr1_xyz_first_300";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "no recording in " << folder << ": set PLANECLOUD_SLAM_DATA";
+  expectNoticedAndEndedSoon(loadFrameSet(folder.string()));
 }
 
 TEST(TrackingTrials, AFastTurnIsFollowedOrRegained) {
