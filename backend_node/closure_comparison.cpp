@@ -62,14 +62,12 @@ double ClosureComparison::loopError(const GraphEdge& other) const {
   const Eigen::Isometry3d T_from_other = graph_.pose(from_).inverse() * graph_.pose(from);
   const Eigen::Isometry3d T_to_other = graph_.pose(to_).inverse() * graph_.pose(to);
   const Eigen::Isometry3d predicted = T_from_other.inverse() * closure_.T_from_to * T_to_other;
-  const Matrix6d from_side = adjoint(predicted.inverse());
-  const Matrix6d to_side = adjoint(T_to_other.inverse());
   const Matrix6d covariance =
       measurementCovariance(other.information) +
-      to_side * measurementCovariance(closure_.information) * to_side.transpose() +
+      transformCovariance(T_to_other.inverse(), measurementCovariance(closure_.information)) +
       driftCovariance(paths_to_[static_cast<std::size_t>(to)], drift_) +
-      from_side * driftCovariance(paths_from_[static_cast<std::size_t>(from)], drift_) *
-          from_side.transpose();
+      transformCovariance(predicted.inverse(),
+                          driftCovariance(paths_from_[static_cast<std::size_t>(from)], drift_));
   return squaredMahalanobis(logSe3(other.T_from_to.inverse() * predicted), covariance);
 }
 

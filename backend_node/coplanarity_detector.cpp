@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/coplanarity_detector.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <utility>
 
@@ -33,10 +31,6 @@ constexpr int kMostSeenThrough = 1;
 
 std::size_t indexOf(int node) { return static_cast<std::size_t>(node); }
 
-double squaredDistance(const Eigen::Vector3d& residual, const Eigen::Matrix3d& covariance) {
-  return residual.dot(covariance.ldlt().solve(residual));
-}
-
 bool parallel(const FlatSurface& target, const FlatSurface& source,
               const Eigen::Isometry3d& T_target_source) {
   const double cosine = target.normal.dot(T_target_source.linear() * source.normal);
@@ -60,7 +54,7 @@ void compareNear(const Eigen::Isometry3d& T_earlier_later, FlatSurface& earlier,
   if (height > kToldApart + kGate * std::sqrt(pair.covariance(0, 0))) {
     earlier.clearance = std::min(earlier.clearance, height);
     later.clearance = std::min(later.clearance, height);
-  } else if (squaredDistance(pair.residual, pair.covariance) < kAlike) {
+  } else if (squaredMahalanobis(pair.residual, pair.covariance) < kAlike) {
     earlier.confirmed = true;
     later.confirmed = true;
   }
@@ -114,8 +108,7 @@ void CoplanarityDetector::lookBack(const Query& query) {
   while (at != query.graph.numbers().begin()) {
     const auto& [id, node] = *--at;
     const KeyframeRecord& other = query.records[indexOf(node)];
-    const bool same =
-        id.robot == source.keyframe->id.robot && id.session == source.keyframe->id.session;
+    const bool same = sameSession(id, source.keyframe->id);
     if (!same || source.path - other.path > kLookBack) return;
     if (query.graph.component(node) != query.graph.component(query.source)) return;
     const Eigen::Isometry3d T_other_source =
@@ -129,11 +122,8 @@ void CoplanarityDetector::lookBack(const Query& query) {
 bool CoplanarityDetector::mayPair(const Query& query, int target) const {
   if (query.graph.component(target) != query.graph.component(query.source)) return false;
   if (surfaces_[indexOf(target)].empty()) return false;
-  const KeyframeRecord& a = query.records[indexOf(target)];
-  const KeyframeRecord& b = query.records[indexOf(query.source)];
-  const bool same_session = a.keyframe->id.robot == b.keyframe->id.robot &&
-                            a.keyframe->id.session == b.keyframe->id.session;
-  return !same_session || std::abs(a.path - b.path) >= options_.candidates.min_path_gap;
+  return isRevisit(query.records[indexOf(target)], query.records[indexOf(query.source)],
+                   options_.candidates.min_path_gap);
 }
 
 std::vector<CoplanarityDetector::Candidate> CoplanarityDetector::propose(const Query& query) {
@@ -173,7 +163,7 @@ bool CoplanarityDetector::judge(const Query& query, Candidate& candidate) const 
   const Matrix6d drift = driftCovariance(candidate.path, options_.drift);
   const Eigen::Matrix3d covariance =
       pair.jacobian * drift * pair.jacobian.transpose() + pair.covariance;
-  if (squaredDistance(pair.residual, covariance) > options_.coplanarity.max_inconsistency) {
+  if (squaredMahalanobis(pair.residual, covariance) > options_.coplanarity.max_inconsistency) {
     return false;
   }
   const double unknown = kGate * std::sqrt(covariance(0, 0)) + std::abs(pair.residual(0));

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planecloud_slam/backend_node/drift_model.h"
 
-#include <Eigen/Cholesky>
-
 namespace planecloud {
 
 double motionLength(const Eigen::Isometry3d& T) {
@@ -23,10 +21,6 @@ Matrix6d measurementCovariance(const Matrix6d& information) {
   const Matrix6d regular = information + Matrix6d::Identity() / kUnknownVariance;
   const Matrix6d covariance = regular.llt().solve(Matrix6d::Identity());
   return 0.5 * (covariance + covariance.transpose());
-}
-
-double squaredMahalanobis(const Vector6d& error, const Matrix6d& covariance) {
-  return error.dot(covariance.ldlt().solve(error));
 }
 
 }  // namespace planecloud

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "planecloud_slam/backend_node/loop_closure_options.h"
@@ -28,7 +29,11 @@ constexpr double kMetresPerRadian = 0.5;
 /// the same piece as soon as true closures tell where they lie.
 constexpr double kUnknownVariance = 4.0;
 
-/// Squared Mahalanobis distance of `error` (6).
-[[nodiscard]] double squaredMahalanobis(const Vector6d& error, const Matrix6d& covariance);
+/// Squared Mahalanobis distance of `error`.
+template <int Size>
+[[nodiscard]] double squaredMahalanobis(const Eigen::Matrix<double, Size, 1>& error,
+                                        const Eigen::Matrix<double, Size, Size>& covariance) {
+  return error.dot(covariance.ldlt().solve(error));
+}
 
 }  // namespace planecloud

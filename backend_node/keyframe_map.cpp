@@ -67,7 +67,7 @@ std::optional<int> KeyframeMap::predecessor(const KeyframeId& id) const {
   const auto next = graph_.numbers().lower_bound(id);
   if (next == graph_.numbers().begin()) return std::nullopt;
   const auto& [before, node] = *std::prev(next);
-  if (before.robot != id.robot || before.session != id.session) return std::nullopt;
+  if (!sameSession(before, id)) return std::nullopt;
   return node;
 }
 

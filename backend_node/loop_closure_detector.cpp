@@ -22,10 +22,6 @@ const MapKeyframe& keyframe(const KeyframeRecords& records, int node) {
   return *records[static_cast<std::size_t>(node)].keyframe;
 }
 
-bool sameSession(const KeyframeId& a, const KeyframeId& b) {
-  return a.session == b.session && a.robot == b.robot;
-}
-
 /// The first `count` of those that score lowest.
 std::vector<LoopCandidate> best(std::vector<std::pair<double, LoopCandidate>> scored, int count) {
   std::stable_sort(scored.begin(), scored.end(),
@@ -55,10 +51,9 @@ std::vector<LoopCandidate> LoopClosureDetector::detect(const PoseGraph& graph,
 
 bool LoopClosureDetector::isRevisit(const Query& query, int target) const {
   if (target == query.source) return false;
-  const KeyframeRecord& a = query.records[static_cast<std::size_t>(target)];
-  const KeyframeRecord& b = query.records[static_cast<std::size_t>(query.source)];
-  return !sameSession(a.keyframe->id, b.keyframe->id) ||
-         std::abs(a.path - b.path) >= options_.min_path_gap;
+  return planecloud::isRevisit(query.records[static_cast<std::size_t>(target)],
+                               query.records[static_cast<std::size_t>(query.source)],
+                               options_.min_path_gap);
 }
 
 std::optional<double> LoopClosureDetector::misfit(const Query& query, int target) const {

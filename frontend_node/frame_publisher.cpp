@@ -27,12 +27,6 @@ std_msgs::ColorRGBA previewColor() {
   return color;
 }
 
-/// A covariance in the tangent space at `source` as one at `target`.
-Matrix6d transformed(const Matrix6d& covariance, const Eigen::Isometry3d& T_target_source) {
-  const Matrix6d to_target = adjoint(T_target_source);
-  return to_target * covariance * to_target.transpose();
-}
-
 }  // namespace
 
 VisualOdometryPublisher::VisualOdometryPublisher(ros::NodeHandle node,
@@ -56,8 +50,9 @@ void VisualOdometryPublisher::publish(const TrackedFrame& tracked) {
   odometry.child_frame_id = T_camera_base_ ? base_frame_ : tracked.camera_frame;
   odometry.pose.pose = toPoseMessage(T_odom_child);
   const Matrix6d at_child =
-      T_camera_base_ ? transformed(at_camera, T_camera_base_->inverse()) : at_camera;
-  const Matrix6d along_odom = transformed(at_child, Eigen::Isometry3d(T_odom_child.linear()));
+      T_camera_base_ ? transformCovariance(T_camera_base_->inverse(), at_camera) : at_camera;
+  const Matrix6d along_odom =
+      transformCovariance(Eigen::Isometry3d(T_odom_child.linear()), at_child);
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(odometry.pose.covariance.data()) =
       along_odom;
   publisher_.publish(odometry);

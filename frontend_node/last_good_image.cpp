@@ -3,7 +3,6 @@
 #include "planecloud_slam/frontend_node/last_good_image.h"
 
 #include <memory>
-#include <utility>
 
 namespace planecloud {
 
@@ -32,9 +31,8 @@ ExpectedPlace LastGoodImage::place(const KeyframeView& keyframe, const RgbdPyram
 
 Alignment LastGoodImage::toKeyframe(Alignment to_image) const {
   const Eigen::Isometry3d& T_image_live = to_image.T_reference_current;
-  const Matrix6d to_live = adjoint(T_image_live.inverse());
-  const Matrix6d covariance =
-      to_live * information_.inverse() * to_live.transpose() + to_image.information.inverse();
+  const Matrix6d covariance = transformCovariance(T_image_live.inverse(), information_.inverse()) +
+                              to_image.information.inverse();
   to_image.information = covariance.inverse();
   to_image.T_reference_current = T_keyframe_image_ * T_image_live;
   return to_image;

@@ -38,8 +38,8 @@ Matrix6d OdometryCovariance::update(const FrameResult& result) {
 }
 
 Matrix6d OdometryCovariance::ofTracked(const FrameResult& result) const {
-  const Matrix6d to_camera = adjoint(result.T_reference_camera.inverse());
-  return to_camera * of_reference_ * to_camera.transpose() + covarianceOf(result.information);
+  return transformCovariance(result.T_reference_camera.inverse(), of_reference_) +
+         covarianceOf(result.information);
 }
 
 }  // namespace planecloud

@@ -29,6 +29,11 @@ struct KeyframeId {
   }
 };
 
+/// Whether both come from one run of one robot's frontend.
+[[nodiscard]] inline bool sameSession(const KeyframeId& a, const KeyframeId& b) {
+  return a.session == b.session && a.robot == b.robot;
+}
+
 /// `robot/session/number`, for logs.
 [[nodiscard]] std::string toString(const KeyframeId& id);
 

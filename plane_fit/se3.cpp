@@ -70,6 +70,11 @@ Matrix6d adjoint(const Eigen::Isometry3d& T) {
   return A;
 }
 
+Matrix6d transformCovariance(const Eigen::Isometry3d& T_target_source, const Matrix6d& covariance) {
+  const Matrix6d to_target = adjoint(T_target_source);
+  return to_target * covariance * to_target.transpose();
+}
+
 double rotationAngle(const Eigen::Isometry3d& T) {
   return logSo3(Eigen::Quaterniond(T.linear()).normalized()).norm();
 }

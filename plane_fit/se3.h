@@ -34,6 +34,10 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 /// The adjoint: `T * Exp(xi) == Exp(adjoint(T) * xi) * T`.
 [[nodiscard]] Matrix6d adjoint(const Eigen::Isometry3d& T);
 
+/// A covariance in the tangent space at `source` as one at `target`.
+[[nodiscard]] Matrix6d transformCovariance(const Eigen::Isometry3d& T_target_source,
+                                           const Matrix6d& covariance);
+
 /// Rotation angle of `T` [rad], in [0, pi].
 [[nodiscard]] double rotationAngle(const Eigen::Isometry3d& T);
 
