@@ -29,10 +29,11 @@ constexpr double kMetresPerRadian = 0.5;
 /// the same piece as soon as true closures tell where they lie.
 constexpr double kUnknownVariance = 4.0;
 
-/// Squared Mahalanobis distance of `error`.
-template <int Size>
-[[nodiscard]] double squaredMahalanobis(const Eigen::Matrix<double, Size, 1>& error,
-                                        const Eigen::Matrix<double, Size, Size>& covariance) {
+/// Squared Mahalanobis distance of `error`, a vector of n numbers of n x n `covariance`; both may
+/// be expressions.
+template <typename Error, typename Covariance>
+[[nodiscard]] double squaredMahalanobis(const Eigen::MatrixBase<Error>& error,
+                                        const Eigen::MatrixBase<Covariance>& covariance) {
   return error.dot(covariance.ldlt().solve(error));
 }
 
