@@ -214,18 +214,6 @@ const std::vector<PlanePatch>& PlaneSet::patches(Level level) const {
   return contents_->patches[indexOf(level)];
 }
 
-Eigen::Vector2d PlaneSet::project(const Eigen::Vector3d& point) const {
-  const CameraIntrinsics& k = camera();
-  if (contents_->view.distorted) return projectPoint(k, point);
-  return {k.fx * (point.x() / point.z()) + k.cx, k.fy * (point.y() / point.z()) + k.cy};
-}
-
-int PlaneSet::patchAt(int x, int y) const {
-  const CameraIntrinsics& k = camera();
-  if (x < 0 || y < 0 || x >= k.width || y >= k.height) return -1;
-  return contents_->view.cells(x / kCell, y / kCell);
-}
-
 const PatchColumns& PlaneSet::coarseColumns() const { return contents_->coarse_columns; }
 
 const PatchColumns& PlaneSet::fineColumns() const { return contents_->fine_columns; }

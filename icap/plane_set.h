@@ -51,12 +51,6 @@ class PlaneSet {
   [[nodiscard]] const std::vector<PlanePatch>& patches(Level level) const;
   [[nodiscard]] bool empty() const { return patches(Level::kWhole).empty(); }
 
-  /// Index of the patch of `patches(Level::kWhole)` seen through the pixel, -1 where there is none.
-  [[nodiscard]] int patchAt(int x, int y) const;
-
-  /// What a point with z > 0 projects to [px], lens distortion included.
-  [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& point) const;
-
   /// `patches(Level::kCoarse)` laid out for nearestPatch, in their order.
   [[nodiscard]] const PatchColumns& coarseColumns() const;
 

@@ -50,7 +50,7 @@ int tileAt(const TileView& view, const Eigen::Vector2f& pixel) {
   int x = 0;
   int y = 0;
   if (!roundInside(view, pixel, x, y)) return SeenTiles::kNotInView;
-  return view.cells(x >> TileView::kCellShift, y >> TileView::kCellShift);
+  return view.tileAt(x, y);
 }
 
 Eigen::Vector3f normalOf(const TileView& view, std::size_t tile) {

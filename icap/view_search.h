@@ -25,6 +25,11 @@ struct TileView {
   std::vector<float> normal_x, normal_y, normal_z, d;
 
   void add(const Eigen::Vector3d& normal, double tile_d);
+
+  /// Index of the tile seen through a pixel of the image, -1: none.
+  [[nodiscard]] std::int32_t tileAt(int x, int y) const {
+    return cells(x >> kCellShift, y >> kCellShift);
+  }
 };
 
 /// Patches on their way into a view: how they move and what of them takes part.

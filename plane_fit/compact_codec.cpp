@@ -11,6 +11,7 @@
 #include "planecloud_slam/plane_fit/checksum.h"
 #include "planecloud_slam/plane_fit/coding_order.h"
 #include "planecloud_slam/plane_fit/quadtree_walk.h"
+#include "planecloud_slam/plane_fit/stream_header.h"
 #include "planecloud_slam/plane_fit/tile_merger.h"
 #include "planecloud_slam/plane_fit/validity_mask.h"
 
@@ -36,10 +37,7 @@ class CompactEncoder {
     const std::vector<CodedTile> coded = quantise(tiles);
     std::vector<std::uint8_t> bytes;
     ByteWriter writer(bytes);
-    writer.u8(kCompactVersion);
-    writer.u8(grid_.layout().initial_width);
-    writer.u8(grid_.layout().initial_height);
-    writer.u8(grid_.layout().min_tile);
+    writeStreamHeader(kCompactVersion, grid_.layout(), writer);
     writer.u16(static_cast<std::uint32_t>(step_) | (with_mask_ ? kMaskBit : 0U));
     writer.varint(static_cast<std::uint32_t>(coded.size()));
     RangeEncoder coder(bytes);
@@ -123,16 +121,7 @@ EncodedPlaneCloud encodeCompact(const PlaneCloud& cloud, const CodecOptions& opt
 PlaneCloud decodeCompact(const EncodedPlaneCloud& encoded) {
   const std::vector<std::uint8_t>& bytes = encoded.bytes;
   ByteReader reader(bytes.data(), bytes.size());
-  if (reader.u8() != kCompactVersion) {
-    throw PlaneCloudDecodeError("plane cloud: COMPACT version " + std::to_string(bytes[0]) +
-                                " is unknown here: update the receiver");
-  }
-  PlaneCloud cloud;
-  cloud.camera = encoded.camera;
-  cloud.statistics = encoded.statistics;
-  cloud.layout.initial_width = static_cast<int>(reader.u8());
-  cloud.layout.initial_height = static_cast<int>(reader.u8());
-  cloud.layout.min_tile = static_cast<int>(reader.u8());
+  PlaneCloud cloud = readStreamHeader(encoded, kCompactVersion, "COMPACT", reader);
   const std::uint32_t step_and_mask = reader.u16();
   const auto step = static_cast<int>(step_and_mask & ~kMaskBit);
   const std::uint32_t count = reader.varint();

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "planecloud_slam/plane_fit/byte_stream.h"
 #include "planecloud_slam/plane_fit/coding_order.h"
+#include "planecloud_slam/plane_fit/stream_header.h"
 #include "planecloud_slam/plane_fit/tile_merger.h"
 
 namespace planecloud {
@@ -77,10 +77,7 @@ EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options
   encoded.plane_count = static_cast<std::uint32_t>(tiles.size());
   encoded.bytes.reserve(kHeaderSize + kPlaneSize * tiles.size());
   ByteWriter writer(encoded.bytes);
-  writer.u8(kRawVersion);
-  writer.u8(cloud.layout.initial_width);
-  writer.u8(cloud.layout.initial_height);
-  writer.u8(cloud.layout.min_tile);
+  writeStreamHeader(kRawVersion, cloud.layout, writer);
   writer.u32(encoded.plane_count);
   for (const TileNode& tile : tiles) writePlane(tile.tile, writer);
   return encoded;
@@ -88,16 +85,7 @@ EncodedPlaneCloud encodeRaw(const PlaneCloud& cloud, const CodecOptions& options
 
 PlaneCloud decodeRaw(const EncodedPlaneCloud& encoded) {
   ByteReader reader(encoded.bytes.data(), encoded.bytes.size());
-  if (reader.u8() != kRawVersion) {
-    throw PlaneCloudDecodeError("plane cloud: RAW version " + std::to_string(encoded.bytes[0]) +
-                                " is unknown here: update the receiver");
-  }
-  PlaneCloud cloud;
-  cloud.camera = encoded.camera;
-  cloud.statistics = encoded.statistics;
-  cloud.layout.initial_width = static_cast<int>(reader.u8());
-  cloud.layout.initial_height = static_cast<int>(reader.u8());
-  cloud.layout.min_tile = static_cast<int>(reader.u8());
+  PlaneCloud cloud = readStreamHeader(encoded, kRawVersion, "RAW", reader);
   const std::uint32_t count = reader.u32();
   if (count != encoded.plane_count || reader.left() != std::uint64_t{count} * kPlaneSize) {
     throw PlaneCloudDecodeError("plane cloud: the number of planes does not match the stream");

@@ -85,9 +85,9 @@ TEST(ViewSearch, LooksTilesUpThroughADistortedLens) {
   const SeenTiles seen =
       lookUpTiles(set.view(), {set.fineColumns(), pieces.size(), Eigen::Isometry3d::Identity()});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Eigen::Vector2d pixel = set.project(pieces[i].centroid);
-    EXPECT_EQ(seen.tiles[i], set.patchAt(static_cast<int>(std::lround(pixel.x())),
-                                         static_cast<int>(std::lround(pixel.y()))));
+    const Eigen::Vector2d pixel = projectPoint(cloud.camera, pieces[i].centroid);
+    EXPECT_EQ(seen.tiles[i], set.view().tileAt(static_cast<int>(std::lround(pixel.x())),
+                                               static_cast<int>(std::lround(pixel.y()))));
   }
 }
 
