@@ -50,7 +50,9 @@ Schedule scheduleOf(int iteration, const IcapOptions& options) {
 }
 
 Schedule finalSchedule(const IcapOptions& options) {
-  return scheduleOf(options.max_iterations, options);
+  Schedule schedule = scheduleOf(options.max_iterations, options);
+  schedule.kernel_width = options.final_kernel_width;
+  return schedule;
 }
 
 /// One step of Gauss-Newton within the directions that stand out from noise.

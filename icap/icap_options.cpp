@@ -63,6 +63,7 @@ void IcapOptions::check() const {
   checkRange("icap/distance_floor", distance_floor, kSmallest, 1.0);
   checkRange("icap/normal_floor", normal_floor, kSmallest, 1.0);
   checkRange("icap/kernel_width", kernel_width, 0.5, 100.0);
+  checkRange("icap/final_kernel_width", final_kernel_width, 0.5, 100.0);
   checkRange("icap/observability", observability, 0.0, 1000.0);
   checkRange("icap/max_correction", max_correction, kSmallest, 100.0);
   checkRange("icap/max_rotation", max_rotation, kSmallest, 3.2);

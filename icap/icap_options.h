@@ -84,7 +84,11 @@ struct IcapOptions {
   double final_angle = 0.3;       ///< matching gate of normals at the end [rad], (0, 3.2]
   double distance_floor = 0.004;  ///< least standard deviation of a plane distance [m], (0, 1]
   double normal_floor = 0.02;     ///< least standard deviation of a normal [rad], (0, 1]
-  double kernel_width = 4.0;      ///< Geman-McClure, in standard deviations [-], [0.5, 100]
+  /// Geman-McClure, in standard deviations [-], [0.5, 100]: narrow while the answer is looked for,
+  /// so that wrong matches do not lead away, wide for the last touch, when most are right and each
+  /// that is left out costs precision (an MM-estimate).
+  double kernel_width = 4.0;
+  double final_kernel_width = 8.0;
   /// A direction counts as observed, and gets information, when its eigenvalue is this many times
   /// what the noise of the normals alone would make [-], [0, 1000]. Noise alone gives 1.
   double observability = 2.0;
@@ -113,6 +117,7 @@ struct IcapOptions {
     visit("distance_floor", self.distance_floor);
     visit("normal_floor", self.normal_floor);
     visit("kernel_width", self.kernel_width);
+    visit("final_kernel_width", self.final_kernel_width);
     visit("observability", self.observability);
     visit("max_correction", self.max_correction);
     visit("max_rotation", self.max_rotation);
