@@ -68,17 +68,22 @@ class Backend::Impl {
     changed();
     ++added_;
     if (options_.loop_closure.candidates.enabled) closeLoops(node, result);
-    if (options_.loop_closure.coplanarity.enabled) findCoplanar(node, *check.planes);
     if (!result.closures.empty()) {
       optimizeAround(result.closures);
       result.optimised = true;
+      if (under_way_) {
+        under_way_->closures.insert(under_way_->closures.end(), result.closures.begin(),
+                                    result.closures.end());
+      }
     }
+    if (options_.loop_closure.coplanarity.enabled) findCoplanar(node, *check.planes);
     return result;
   }
 
   void optimize() {
     countRemoved(map_.graph().optimize().removed);
     optimised();
+    under_way_.reset();
   }
 
   [[nodiscard]] bool optimisationDue() const {
@@ -87,16 +92,17 @@ class Backend::Impl {
 
   [[nodiscard]] GraphOptimisation startOptimisation() {
     optimised();
-    return GraphOptimisation(map_.graph());
+    under_way_ = UnderWay{revision_, {}};
+    return GraphOptimisation(map_.graph(), revision_);
   }
 
   void finishOptimisation(const GraphOptimisation& optimisation) {
-    const PoseGraph& copy = optimisation.graph();
-    const bool known =
-        copy.size() > 0 && copy.size() <= map_.graph().size() && copy.id(0) == map_.graph().id(0);
-    if (!known) return;
-    countRemoved(map_.graph().adopt(copy, optimisation.summary()));
+    if (!under_way_ || under_way_->revision != optimisation.revision()) return;
+    const std::vector<GraphEdge> since = std::move(under_way_->closures);
+    under_way_.reset();
+    countRemoved(map_.graph().adopt(optimisation.graph(), optimisation.summary()));
     changed();
+    if (!since.empty()) optimizeAround(since);
   }
 
   void reset() {
@@ -127,6 +133,12 @@ class Backend::Impl {
   }
 
  private:
+  /// An optimisation of the whole that was started and not yet taken over.
+  struct UnderWay {
+    std::uint64_t revision = 0;       ///< of the map it began with
+    std::vector<GraphEdge> closures;  ///< accepted since
+  };
+
   /// A small map is optimised as a whole, which is what its window would be.
   void optimizeAround(const std::vector<GraphEdge>& closures) {
     if (map_.graph().size() <= options_.graph.local_window) return optimize();
@@ -235,6 +247,7 @@ class Backend::Impl {
   RejectedClosures rejected_;
   bool settled_ = true;    ///< no closures wait for an optimisation of the whole
   std::size_t added_ = 0;  ///< keyframes since the last optimisation of the whole
+  std::optional<UnderWay> under_way_;
   std::uint64_t revision_ = 0;
   std::shared_ptr<const MapSnapshot> snapshot_;  ///< of `revision_`, null until asked for
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -46,16 +47,20 @@ struct BackendStatistics {
 /// Backend::startOptimisation, run it anywhere, give it back to Backend::finishOptimisation.
 class GraphOptimisation {
  public:
-  explicit GraphOptimisation(PoseGraph graph) : graph_(std::move(graph)) {}
+  /// `revision`: of the map `graph` was copied from.
+  explicit GraphOptimisation(PoseGraph graph, std::uint64_t revision = 0)
+      : graph_(std::move(graph)), revision_(revision) {}
 
   /// May take seconds. Touches nothing but itself, so that it can run on a thread of its own.
   void run() { summary_ = graph_.optimize(); }
 
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
   [[nodiscard]] const OptimisationSummary& summary() const { return summary_; }
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
  private:
   PoseGraph graph_;
+  std::uint64_t revision_;
   OptimisationSummary summary_;
 };
 
@@ -81,7 +86,8 @@ class Backend {
   [[nodiscard]] bool optimisationDue() const;
   /// A copy of the graph to be optimised while keyframes go on coming in.
   [[nodiscard]] GraphOptimisation startOptimisation();
-  /// Takes over the result. Does nothing when the map was reset meanwhile.
+  /// Takes over the result, then optimises around the closures it could not know of. Does nothing
+  /// when the map was reset or optimised as a whole meanwhile.
   void finishOptimisation(const GraphOptimisation& optimisation);
 
   /// Forgets everything.

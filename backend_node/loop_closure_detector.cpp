@@ -17,6 +17,8 @@ namespace {
 
 /// Keyframes whose descriptors are compared in full.
 constexpr std::size_t kShortlist = 48;
+/// A frontend gives a few; whoever gives more does not hold up the map.
+constexpr int kMostHinted = 16;
 
 const MapKeyframe& keyframe(const KeyframeRecords& records, int node) {
   return *records[static_cast<std::size_t>(node)].keyframe;
@@ -124,7 +126,9 @@ void LoopClosureDetector::addHints(const Query& query,
     const std::optional<int> target = query.graph.find(hint);
     if (target && *target != query.source) targets.push_back(*target);
   }
+  int hinted_candidates = 0;
   for (const int target : targets) {
+    if (hinted_candidates == kMostHinted) break;
     const bool known =
         std::any_of(candidates.begin(), candidates.end(),
                     [&](const LoopCandidate& candidate) { return candidate.target == target; });
@@ -134,6 +138,7 @@ void LoopClosureDetector::addHints(const Query& query,
     std::vector<Scored> hinted{{0.0, {target, query.source, located, 0.0, 0.0}}};
     if (located) measure(query, hinted);
     candidates.push_back(hinted.front().second);
+    ++hinted_candidates;
   }
 }
 

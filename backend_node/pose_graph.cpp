@@ -185,6 +185,7 @@ std::vector<GraphEdge> PoseGraph::adopt(const PoseGraph& copy, const Optimisatio
   for (int node = copy.size(); node < size(); ++node) {
     int anchor = node;
     for (const int e : edges_of_[index(node)]) {
+      if (isMadeByBackend(edges_.kind(index(e)))) continue;
       anchor = std::min(anchor, ends_[index(e)].opposite(node));
     }
     corrections.push_back(anchor < node ? corrections[index(anchor)]

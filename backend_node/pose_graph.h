@@ -83,8 +83,8 @@ class PoseGraph {
   OptimisationSummary optimizeAround(const std::vector<int>& seeds);
 
   /// Takes over what became of `copy`, a copy of this graph that was optimised while this one went
-  /// on: poses, closures found false. Nodes added since keep their place to the older node they
-  /// hang on. Returns the edges that left.
+  /// on: poses, closures found false. Nodes added since go with the older node their robot's own
+  /// edges hang them on; closures since then are for `optimizeAround`. Returns the edges that left.
   std::vector<GraphEdge> adopt(const PoseGraph& copy, const OptimisationSummary& summary);
 
   /// Optimises all components; a closure or coplanar edge that then disagrees by more than

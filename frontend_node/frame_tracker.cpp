@@ -49,7 +49,8 @@ TrackedFrame FrameTracker::track(const InputFrame& input, const ImageReading& re
   tracked.camera = fromMessage(*input.camera_info, reading.rectified);
   tracked.camera_frame = camera_frame_ = input.color->header.frame_id;
   useCamera(tracked.camera);
-  if (input.time_jumped) {
+  if (input.time_jumps != time_jumps_) {
+    time_jumps_ = input.time_jumps;
     frontend_->startNewSegment();
     odometry_.clear();
     is_placed_ = false;

@@ -62,6 +62,7 @@ class FrameTracker {
   CameraIntrinsics camera_;
   std::string camera_frame_;
   bool is_placed_ = false;
+  int time_jumps_ = 0;  ///< that were followed
 };
 
 }  // namespace planecloud

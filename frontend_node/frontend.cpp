@@ -33,10 +33,11 @@ void checkSize(int width, int height, const CameraIntrinsics& camera, const char
 
 class Frontend::Impl {
  public:
-  Impl(const FrontendOptions& options, const CameraIntrinsics& camera, KeyframeId first_id)
+  Impl(const FrontendOptions& options, const CameraIntrinsics& camera, KeyframeId first_id,
+       int first_segment = 0)
       : options_(checked(options)),
         camera_(trackedCamera(camera, options)),
-        session_(options_, camera_, first_id) {
+        session_(options_, camera_, first_id, first_segment) {
     if (first_id.robot.empty()) {
       throw std::invalid_argument("a frontend needs the name of its robot");
     }
@@ -53,7 +54,7 @@ class Frontend::Impl {
   }
 
   std::unique_ptr<Impl> continueWith(const CameraIntrinsics& camera) {
-    auto next = std::make_unique<Impl>(options_, camera, session_.nextId());
+    auto next = std::make_unique<Impl>(options_, camera, session_.nextId(), session_.nextSegment());
     session_.endSegment();
     for (CompletedKeyframe& completed : session_.takeCompleted()) {
       next->completed_.push_back(std::move(completed));

@@ -4,6 +4,7 @@
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "planecloud_slam/planecloud_msgs/diagnostics.h"
@@ -128,7 +129,7 @@ void FrontendNode::reportLoss(const FrameResult& result) {
   is_tracking_ = result.status != TrackingStatus::kLost;
   if (is_tracking_) {
     has_open_keyframe_ = true;
-    counters_.segments = result.segment + 1;
+    counters_.segments = std::max(counters_.segments.load(), result.segment + 1);
     if (result.status != TrackingStatus::kRelocalised) return;
     ++counters_.found;
     ROS_INFO_STREAM("tracking found the camera again, at keyframe " << toString(result.reference));

@@ -50,6 +50,8 @@ class LossDetector {
 
   /// A good frame was aligned so.
   void learn(const Alignment& alignment);
+  /// What is normal is to be learnt anew, in another recording.
+  void forget() { normal_grey_ = normal_inliers_ = 0.0; }
 
  private:
   /// Largest scale of the grey residuals to believe, `growth` times the normal one.

@@ -96,7 +96,7 @@ void RgbdInput::onImage(InputMonitor::Topic topic, const sensor_msgs::ImageConst
         image->header.stamp.toSec());
     synchronizer_.clear();
     without_camera_info_.clear();
-    time_jumped_ = true;
+    ++time_jumps_;
   }
   if (topic == InputMonitor::kColor) {
     synchronizer_.addColor(image);
@@ -121,7 +121,7 @@ void RgbdInput::onPair(const sensor_msgs::ImageConstPtr& color,
     const std::lock_guard<std::mutex> lock(monitor_mutex_);
     monitor_.notePair();
   }
-  InputFrame frame{color, depth, nullptr, std::exchange(time_jumped_, false)};
+  InputFrame frame{color, depth, nullptr, time_jumps_};
   if (camera_info_) {
     passOn(std::move(frame));
     return;

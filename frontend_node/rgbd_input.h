@@ -28,7 +28,7 @@ struct InputFrame {
   sensor_msgs::ImageConstPtr color;
   sensor_msgs::ImageConstPtr depth;
   sensor_msgs::CameraInfoConstPtr camera_info;
-  bool time_jumped = false;  ///< the first one after time went back
+  int time_jumps = 0;  ///< how often time went back before it
 };
 
 /// Subscribes to the camera and pairs its images. Has its own thread, so that a callback that waits
@@ -72,7 +72,7 @@ class RgbdInput {
   RgbdSynchronizer synchronizer_;
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::deque<InputFrame> without_camera_info_;
-  bool time_jumped_ = false;
+  int time_jumps_ = 0;
 
   mutable std::mutex monitor_mutex_;
   InputMonitor monitor_;

@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <utility>
-
-#include "planecloud_slam/frontend_node/wheel_information.h"
-
 namespace planecloud {
 namespace {
 
@@ -30,7 +27,7 @@ Eigen::Isometry3d levelledCamera() {
 }  // namespace
 
 TrackingSession::TrackingSession(const FrontendOptions& options, const CameraIntrinsics& camera,
-                                 KeyframeId first_id)
+                                 KeyframeId first_id, int first_segment)
     : options_(options),
       images_(camera, options.tracking),
       tracker_(options.tracking),
@@ -39,6 +36,7 @@ TrackingSession::TrackingSession(const FrontendOptions& options, const CameraInt
       relocaliser_(options.history, options.tracking),
       open_(options.local_map, camera.rectified()),
       next_id_(std::move(first_id)),
+      next_segment_(first_segment),
       T_odom_start_(levelledCamera()) {
   if (options.tracking.plane_landmarks) landmarks_.emplace(camera.rectified(), options.plane_fit);
 }
@@ -63,6 +61,7 @@ void TrackingSession::predictMotion(double stamp,
   if (!isTracking()) return;
   wheels_since_good_ = T_previous_current && (wheels_since_good_ || !isLost());
   if (T_previous_current) {
+    wheels_.add(*T_previous_current);
     T_reference_predicted_ = T_reference_predicted_ * *T_previous_current;
   } else if (const auto T_last_current = motion_.after(stamp - last_stamp_);
              T_last_current && !isLost()) {
@@ -115,6 +114,7 @@ FrameResult TrackingSession::accept(const RgbdFrame& frame, const Alignment& ali
   const double seconds = frame.stamp - last_good_stamp_;
   if (seconds > 0.0) motion_.observe(T_reference_last_.inverse() * T_reference_camera, seconds);
   T_reference_last_ = T_reference_predicted_ = T_reference_camera;
+  wheels_ = WheelPath{};
   brightness_ = alignment.brightness;
   const bool is_obstructed = loss_.isObstructed(alignment, frame.stamp < wary_until_);
   if (!is_obstructed) loss_.learn(alignment);
@@ -181,7 +181,10 @@ FrameResult TrackingSession::resume(const RgbdFrame& frame, const Relocalisation
   // Out of the keyframe's sight: a new one begins here.
   if (last_good_.isAt(found)) return accept(frame, last_good_.toKeyframe(found.alignment), true);
   const bool is_elsewhere = found.view != reference_.view;
-  if (is_elsewhere) switchTo(found);
+  if (is_elsewhere) {
+    switchTo(found);
+    last_good_stamp_ = frame.stamp;  // the last good pose was relative to another keyframe
+  }
   const bool leaving = selector_.isLeavingKeyframe(
       found.alignment.T_reference_current, found.alignment.normal_matrix, found.alignment.overlap);
   FrameResult result = accept(frame, found.alignment, leaving);
@@ -208,8 +211,7 @@ FrameResult TrackingSession::lose(const std::string& reason) {
 
 /// Nothing is recognised, but the wheels know the way: the segment goes on with a weak edge.
 FrameResult TrackingSession::bridgeByWheels(const RgbdFrame& frame) {
-  const RelativePoseEdge edge{reference_.view->id, T_reference_predicted_,
-                              wheelInformation(T_reference_predicted_)};
+  const RelativePoseEdge edge{reference_.view->id, T_reference_predicted_, wheels_.information()};
   FrameResult result;
   result.status = TrackingStatus::kRelocalised;
   result.T_odom_camera = reference_.view->T_odom_camera * T_reference_predicted_;
@@ -222,7 +224,7 @@ FrameResult TrackingSession::bridgeByWheels(const RgbdFrame& frame) {
 }
 
 FrameResult TrackingSession::openSegment(const RgbdFrame& frame) {
-  ++segment_;
+  segment_ = next_segment_++;
   if (options_.planar) restrictToFloor();
   openKeyframe(frame, T_odom_start_, {});
   last_good_stamp_ = frame.stamp;
@@ -253,6 +255,7 @@ void TrackingSession::openKeyframe(const RgbdFrame& frame, const Eigen::Isometry
   open_.open(images_.full(frame), reference_, std::move(edges));
   brightness_ = Brightness{};
   T_reference_last_ = T_reference_predicted_ = Eigen::Isometry3d::Identity();
+  wheels_ = WheelPath{};
   last_good_.forget();
   usable_lost_ = 0.0;
   selector_.reset();

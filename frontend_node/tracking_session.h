@@ -17,6 +17,7 @@
 #include "planecloud_slam/frontend_node/motion_model.h"
 #include "planecloud_slam/frontend_node/open_keyframe.h"
 #include "planecloud_slam/frontend_node/relocaliser.h"
+#include "planecloud_slam/frontend_node/wheel_path.h"
 
 namespace planecloud {
 
@@ -27,7 +28,7 @@ class TrackingSession {
   /// `camera` as it takes the images. Throws std::invalid_argument when options or camera fail
   /// their check.
   TrackingSession(const FrontendOptions& options, const CameraIntrinsics& camera,
-                  KeyframeId first_id);
+                  KeyframeId first_id, int first_segment = 0);
 
   /// See Frontend::track; stamps must not run backwards.
   [[nodiscard]] FrameResult track(const RgbdFrame& frame,
@@ -36,7 +37,11 @@ class TrackingSession {
   /// Completes the open keyframe; the next frame opens a segment where this one ended.
   void endSegment();
   /// Nothing seen so far will be looked for again: time went backwards.
-  void forgetHistory() { history_.clear(); }
+  void forgetHistory() {
+    history_.clear();
+    loss_.forget();
+    wary_until_ = 0.0;
+  }
   void setNextPose(const Eigen::Isometry3d& T_odom_camera) { T_odom_start_ = T_odom_camera; }
   void setKeyframeOptions(const KeyframeSelectorOptions& options) { selector_.setOptions(options); }
   [[nodiscard]] std::vector<CompletedKeyframe> takeCompleted();
@@ -44,6 +49,7 @@ class TrackingSession {
   [[nodiscard]] bool isTracking() const { return static_cast<bool>(reference_.view); }
   [[nodiscard]] const KeyframeId& nextId() const { return next_id_; }
   [[nodiscard]] const Eigen::Isometry3d& nextPose() const { return T_odom_start_; }
+  [[nodiscard]] int nextSegment() const { return next_segment_; }
 
  private:
   void predictMotion(double stamp, const std::optional<Eigen::Isometry3d>& T_previous_current);
@@ -81,7 +87,8 @@ class TrackingSession {
   LastGoodImage last_good_;
   std::deque<KeyframeViewPtr> history_;
   KeyframeId next_id_;
-  int segment_ = -1;
+  int segment_ = -1;  ///< of the reference; goes back when an earlier one is found again
+  int next_segment_ = 0;
   std::vector<CompletedKeyframe> completed_;
 
   Eigen::Isometry3d T_odom_start_;  ///< where the next segment begins
@@ -94,6 +101,7 @@ class TrackingSession {
   double wary_until_ = 0.0;
   double usable_lost_ = 0.0;  ///< time lost on usable images [s]
   bool last_was_usable_ = false;
+  WheelPath wheels_;                ///< since T_reference_last_
   bool wheels_since_good_ = false;  ///< the wheels spoke ever since the last good frame
 };
 

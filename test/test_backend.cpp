@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -185,6 +186,63 @@ TEST(Backend, TakesALaterSessionAsARestartAndTwoThatInterleaveAsANameClash) {
   EXPECT_EQ(result.status, InsertionStatus::kNameClash);
   EXPECT_NE(result.reason.find("sessions 1 and 2"), std::string::npos) << result.reason;
   EXPECT_EQ(backend.snapshot(), before);
+}
+
+/// Largest error of the position of a node relative to the one before it in the map [m].
+double largestStepError(const MapSnapshot& map, const Truth& truth) {
+  double largest = 0.0;
+  for (std::size_t i = 1; i < map.nodes.size(); ++i) {
+    const MapSnapshot::Node& a = map.nodes[i - 1];
+    const MapSnapshot::Node& b = map.nodes[i];
+    const Eigen::Isometry3d step = truth.at(a.keyframe->id).inverse() * truth.at(b.keyframe->id);
+    const Eigen::Isometry3d mapped = a.T_map_camera.inverse() * b.T_map_camera;
+    largest = std::max(largest, (step.inverse() * mapped).translation().norm());
+  }
+  return largest;
+}
+
+/// A map whose loop closes while it is optimised as a whole.
+struct ClosedMeanwhile {
+  Backend backend;
+  std::optional<GraphOptimisation> meanwhile;
+
+  explicit ClosedMeanwhile(const BackendOptions& options) : backend(options) {
+    const std::vector<Keyframe>& keyframes = round().keyframes;
+    std::size_t next = 0;
+    for (; next + 10 < keyframes.size(); ++next) backend.insert(keyframes[next]);
+    EXPECT_EQ(backend.statistics().closures_intra, 0u);
+    meanwhile = backend.startOptimisation();
+    for (; next < keyframes.size(); ++next) backend.insert(keyframes[next]);
+    EXPECT_GE(backend.statistics().closures_intra, 2u);
+    meanwhile->run();
+  }
+};
+
+BackendOptions smallWindow() {
+  BackendOptions options;
+  options.graph.local_window = 25;
+  return options;
+}
+
+TEST(Backend, KeepsTheLoopThatClosedDuringAnOptimisation) {
+  ClosedMeanwhile closed(smallWindow());
+  Backend& backend = closed.backend;
+  const auto before = backend.snapshot();
+  backend.finishOptimisation(*closed.meanwhile);
+  const auto after = backend.snapshot();
+  EXPECT_GT(after->revision, before->revision);
+  EXPECT_LT(largestError(*after, round().truth), 1.1 * largestError(*before, round().truth));
+  EXPECT_LT(largestStepError(*after, round().truth),
+            largestStepError(*before, round().truth) + 0.005);
+}
+
+TEST(Backend, IgnoresAnOptimisationThatAnotherOneOvertook) {
+  ClosedMeanwhile closed(smallWindow());
+  Backend& backend = closed.backend;
+  backend.optimize();
+  const auto optimised = backend.snapshot();
+  backend.finishOptimisation(*closed.meanwhile);
+  EXPECT_EQ(backend.snapshot(), optimised);
 }
 
 TEST(Backend, SnapshotsStayWhatTheyWere) {

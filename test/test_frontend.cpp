@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -119,8 +120,8 @@ TEST(Frontend, ShortDarknessIsLostAndRegainedWithoutAJump) {
 }
 
 /// What a camera sees that was turned around: nothing of the path.
-RgbdFrame elsewhere(int i) {
-  RgbdFrame frame = synthetic::render(synthetic::camera(), pose(0, 0, 0, 0, 2.5, 0));
+RgbdFrame elsewhere(int i, double turn = 2.5) {
+  RgbdFrame frame = synthetic::render(synthetic::camera(), pose(0, 0, 0, 0, turn, 0));
   frame.stamp = pathFrame(i).stamp;
   return frame;
 }
@@ -147,6 +148,29 @@ TEST(Frontend, LongLossBeginsANewSegment) {
   const std::vector<CompletedKeyframe> completed = frontend.takeCompleted();
   ASSERT_EQ(completed.size(), 2U);
   EXPECT_TRUE(completed[1].keyframe.edges.empty());
+}
+
+TEST(Frontend, NumbersEverySegmentAnew) {
+  FrontendOptions options;
+  options.lost.new_segment_after = 0.3;
+  Frontend frontend = makeFrontend(options);
+  int i = 0;
+  const auto show = [&](const std::function<RgbdFrame()>& look, TrackingStatus awaited) {
+    FrameResult result;
+    for (int tries = 0; tries < 20; ++tries) {
+      RgbdFrame frame = look();
+      frame.stamp = pathFrame(i++).stamp;
+      result = frontend.track(frame);
+      if (result.status == awaited) break;
+    }
+    EXPECT_EQ(result.status, awaited) << result.reason;
+    return result.segment;
+  };
+  const auto onThePath = [&] { return pathFrame(0); };
+  EXPECT_EQ(show(onThePath, TrackingStatus::kInitialised), 0);
+  EXPECT_EQ(show([&] { return elsewhere(i); }, TrackingStatus::kInitialised), 1);
+  EXPECT_EQ(show(onThePath, TrackingStatus::kRelocalised), 0);
+  EXPECT_EQ(show([&] { return elsewhere(i, 4.5); }, TrackingStatus::kInitialised), 2);
 }
 
 TEST(Frontend, DarknessAloneOpensNoSegment) {
