@@ -122,12 +122,23 @@ void MapPublisher::updateTransforms(const MapSnapshot& snapshot) {
   }
   const std::vector<std::string> wanted = splitWords(options_.tf_robots);
   std::vector<geometry_msgs::TransformStamped> transforms;
+  std::map<std::string, std::string> placed;  // robot by its frame
   for (const auto& [robot, node] : newest) {
     const bool is_wanted = std::find(wanted.begin(), wanted.end(), robot) != wanted.end();
     if (!wanted.empty() && !is_wanted) continue;
+    const std::string frame = frameOfRobot(options_.odom_frame, robot);
+    const auto [taken, is_first] = placed.emplace(frame, robot);
+    if (!is_first) {
+      ROS_WARN_STREAM_THROTTLE(10.0, "robots " << taken->second << " and " << robot
+                                               << " share the odometry frame '" << frame
+                                               << "': only the first is placed by tf; set "
+                                                  "~odom_frame to {robot}/odom, or to what their "
+                                                  "bases publish");
+      continue;
+    }
     geometry_msgs::TransformStamped transform;
     transform.header.frame_id = frameOfComponent(options_.map_frame, node->component);
-    transform.child_frame_id = frameOfRobot(options_.odom_frame, robot);
+    transform.child_frame_id = frame;
     transform.transform =
         toTransformMessage(node->T_map_camera * node->keyframe->T_odom_camera.inverse());
     transforms.push_back(std::move(transform));

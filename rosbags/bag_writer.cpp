@@ -12,8 +12,10 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <system_error>
 
 #include "planecloud_slam/planecloud_msgs/pose_conversions.h"
 
@@ -104,9 +106,20 @@ BagWriter::BagWriter(const std::string& path) : path_(path) {
   bag_.setCompression(rosbag::compression::LZ4);
 }
 
+BagWriter::~BagWriter() {
+  if (is_closed_) return;
+  try {
+    bag_.close();
+  } catch (const rosbag::BagException&) {  // it goes anyway
+  }
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+}
+
 void BagWriter::close() {
   try {
     bag_.close();
+    is_closed_ = true;
   } catch (const rosbag::BagException& error) {
     throw diskError(path_, error.what());
   }

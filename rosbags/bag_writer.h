@@ -45,6 +45,11 @@ struct CameraTopics {
 class BagWriter {
  public:
   explicit BagWriter(const std::string& path);
+  /// Removes a bag that was not closed: half of one would pass for a whole.
+  ~BagWriter();
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+
   /// Writes the index; a bag that was never closed has none.
   void close();
 
@@ -80,6 +85,7 @@ class BagWriter {
 
   std::string path_;
   rosbag::Bag bag_;
+  bool is_closed_ = false;
 };
 
 /// Nearest nanosecond.

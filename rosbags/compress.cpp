@@ -182,6 +182,7 @@ int compress(const ParsedFlags& flags) {
   const CompressionReport report =
       compressAll(recordings, readSelection(flags, options), options, output);
   output.close();
+  if (report.images() == 0) throw std::runtime_error(kNoPairs);
   if (flags["json"].as<bool>()) {
     std::cout << report.json().dump(2) << '\n';
   } else {

@@ -15,6 +15,7 @@ class CompressionReport {
  public:
   void add(const CompressedFrame& frame);
 
+  [[nodiscard]] std::size_t images() const { return fit_times_.size(); }
   [[nodiscard]] nlohmann::ordered_json json() const;
   /// The same as a table for people.
   [[nodiscard]] std::string table() const;

@@ -119,6 +119,10 @@ const char* const kInputHelp =
     "depth/, optional groundtruth.txt and camera.yaml), or hallway:SEED[:ROBOTS], the built-in\n"
     "world rendered on the fly.";
 
+const char* const kNoPairs =
+    "the input has no pair of a colour and a depth image (in bags: taken within 20 ms of each "
+    "other)";
+
 void addSequenceFlags(po::options_description& flags) {
   flags.add_options()("camera",
                       po::value<std::string>()->value_name("FX,FY,CX,CY[,K1,K2,P1,P2,K3]"),

@@ -17,6 +17,9 @@ namespace planecloud {
 /// What an INPUT may be, for --help.
 extern const char* const kInputHelp;
 
+/// What to say when no recording had a frame.
+extern const char* const kNoPairs;
+
 /// Adds --camera and --depth-scale.
 void addSequenceFlags(boost::program_options::options_description& flags);
 

@@ -1,8 +1,11 @@
 // Copyright (c) 2026, the planecloud_slam authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "planecloud_slam/rosbags/command_line.h"
@@ -87,8 +90,27 @@ std::size_t countFrames(const std::vector<std::shared_ptr<Recording>>& recording
   return count;
 }
 
+/// Throws std::runtime_error when there is nothing to map, saying what may be the matter.
+void checkKeyframes(const ReplayResult& result) {
+  std::size_t frames = 0;
+  for (const RobotLog& log : result.robots) frames += log.frames.size();
+  if (frames == 0) {
+    throw std::runtime_error(kNoPairs);
+  }
+  const auto& nodes = result.map->nodes;
+  const bool has_planes = std::any_of(nodes.begin(), nodes.end(), [](const auto& node) {
+    return node.keyframe->planes.count() > 0;
+  });
+  if (has_planes) return;
+  throw std::runtime_error("none of the " + std::to_string(frames) +
+                           " frames has a plane: is the depth empty, or the depth scale wrong "
+                           "(--depth-scale, depth_scale in camera.yaml)?");
+}
+
 int replay(const ParsedFlags& flags) {
   ReplayOptions options = readOptions(flags);
+  const auto folder = flags["output"].as<std::string>();
+  std::filesystem::create_directories(folder);  // a replay takes too long to fail at its end
   const auto note = [](const std::string& text) { std::cerr << "replay: " << text << '\n'; };
   const auto recordings =
       openRecordings(flags["INPUT"].as<std::vector<std::string>>(), readSequenceFlags(flags), note);
@@ -99,8 +121,8 @@ int replay(const ParsedFlags& flags) {
     options.on_note = [&](const std::string& text) { progress.print("replay: " + text); };
     result = runReplay(recordings, options);
   }
+  checkKeyframes(result);
   const JudgedReplay judged = judgeReplay(std::move(result));
-  const auto folder = flags["output"].as<std::string>();
   writeReplay(folder, judged);
   std::cout << summarise(judged) << "written    " << folder
             << "/ (map.png, map.ply, report.json, trajectories)\n";

@@ -66,11 +66,10 @@ std::string formatYamlOptions(const OptionValues& values) {
   return std::string(emitter.c_str()) + "\n";
 }
 
-void refuseUnknownOptions(const std::string& path, const OptionValues& unknown,
-                          const OptionValues& known) {
+void refuseUnknownOptions(const OptionValues& unknown, const OptionValues& known) {
   if (unknown.empty()) return;
   const std::string& key = unknown.begin()->first;
-  throw std::invalid_argument(path + ": unknown key '" + key + "'; nearest known is '" +
+  throw std::invalid_argument("unknown key '" + key + "'; nearest known is '" +
                               nearestKey(key, known) + "'");
 }
 

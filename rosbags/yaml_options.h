@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include "planecloud_slam/plane_fit/option_values.h"
@@ -15,10 +16,9 @@ namespace planecloud {
 /// The same values as nested YAML maps, keys sorted.
 [[nodiscard]] std::string formatYamlOptions(const OptionValues& values);
 
-/// Throws std::invalid_argument naming `path`, the first of `unknown` and the nearest of `known`;
-/// does nothing when `unknown` is empty.
-void refuseUnknownOptions(const std::string& path, const OptionValues& unknown,
-                          const OptionValues& known);
+/// Throws std::invalid_argument naming the first of `unknown` and the nearest of `known`; does
+/// nothing when `unknown` is empty.
+void refuseUnknownOptions(const OptionValues& unknown, const OptionValues& known);
 
 /// Reads `path` into `options`, whose other fields keep their values, and checks them. Throws
 /// std::runtime_error or std::invalid_argument naming the file, the key and what is wrong.
@@ -26,9 +26,13 @@ template <typename Options>
 void loadYamlOptions(const std::string& path, Options& options) {
   OptionValues values = readYamlOptions(path);
   const OptionValues known = dumpOptions(options);
-  takeOptions(values, options);
-  refuseUnknownOptions(path, values, known);
-  options.check();
+  try {
+    takeOptions(values, options);
+    refuseUnknownOptions(values, known);
+    options.check();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("'" + path + "': " + error.what());
+  }
 }
 
 }  // namespace planecloud
