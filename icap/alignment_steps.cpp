@@ -29,7 +29,8 @@ constexpr std::size_t kScouts = 500;
 /// The annealing of one alignment.
 struct Schedule {
   MatchGates gates;
-  double kernel_width = 0.0;
+  double kernel_width = 0.0;       ///< of what is observed, and how well
+  double step_kernel_width = 0.0;  ///< of the way there
   bool coarse = false;
   std::size_t count = std::numeric_limits<std::size_t>::max();  ///< of source pieces
   double followed = 0.0;  ///< of the noise's curvature: directions that move
@@ -46,12 +47,13 @@ Schedule scheduleOf(int iteration, const IcapOptions& options) {
   schedule.gates.normal_length = options.fine_normal_length;
   schedule.followed = options.observability;
   schedule.kernel_width = options.kernel_width * schedule.gates.distance / options.final_distance;
+  schedule.step_kernel_width = schedule.kernel_width;
   return schedule;
 }
 
 Schedule finalSchedule(const IcapOptions& options) {
   Schedule schedule = scheduleOf(options.max_iterations, options);
-  schedule.kernel_width = options.final_kernel_width;
+  schedule.step_kernel_width = options.final_kernel_width;
   return schedule;
 }
 
@@ -63,13 +65,17 @@ void iterate(const PlaneSetPair& pair, const Schedule& schedule, const IcapOptio
       match(pair.target, pair.source, progress.T_target_source, schedule.gates, schedule.count);
   progress.enough = progress.matches.size() >= static_cast<std::size_t>(options.min_matches);
   if (!progress.enough) return;
-  progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
-                                         schedule.kernel_width, options);
+  const auto systemOf = [&](double kernel_width) {
+    return buildNormalEquations(progress.matches, progress.T_target_source, kernel_width, options);
+  };
+  progress.system = systemOf(schedule.kernel_width);
   progress.observability = analyseObservability(progress.system, options.observability);
-  const Vector6d step = solveObserved(
-      progress.system, schedule.followed == options.observability
-                           ? progress.observability
-                           : analyseObservability(progress.system, schedule.followed));
+  const Observability moving = schedule.followed == options.observability
+                                   ? progress.observability
+                                   : analyseObservability(progress.system, schedule.followed);
+  const bool is_wider = schedule.step_kernel_width != schedule.kernel_width;
+  const Vector6d step =
+      solveObserved(is_wider ? systemOf(schedule.step_kernel_width) : progress.system, moving);
   progress.T_target_source = progress.T_target_source * expSe3(step);
   progress.last_step = step.norm();
   ++progress.iterations;

@@ -97,7 +97,7 @@ AlignmentProgress alignPaperForm(const PlaneSet& target, const PlaneSet& source,
   progress.enough = true;
   progress.last_step = aligned.settled ? 0.0 : kRestlessStep;
   progress.system = buildNormalEquations(progress.matches, progress.T_target_source,
-                                         options.final_kernel_width, options);
+                                         options.kernel_width, options);
   progress.observability = analyseObservability(progress.system, options.observability);
   return progress;
 }

@@ -85,8 +85,8 @@ struct IcapOptions {
   double distance_floor = 0.004;  ///< least standard deviation of a plane distance [m], (0, 1]
   double normal_floor = 0.02;     ///< least standard deviation of a normal [rad], (0, 1]
   /// Geman-McClure, in standard deviations [-], [0.5, 100]: narrow while the answer is looked for,
-  /// so that wrong matches do not lead away, wide for the last touch, when most are right and each
-  /// that is left out costs precision (an MM-estimate).
+  /// so that wrong matches do not lead away, and for what is observed and how well; wide for the
+  /// last steps, when most are right and each that is left out costs precision (an MM-estimate).
   double kernel_width = 4.0;
   double final_kernel_width = 8.0;
   /// A direction counts as observed, and gets information, when its eigenvalue is this many times
