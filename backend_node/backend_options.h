@@ -37,7 +37,7 @@ struct PoseGraphOptions {
   double odometry_rotation_floor = 0.003;
   /// Squared Mahalanobis distance above which a closure is found false after optimisation and
   /// leaves again, (0, 1e6].
-  double removal_distance = 30.0;
+  double removal_distance = 20.0;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
