@@ -5,6 +5,7 @@
 import re
 import shutil
 import subprocess
+import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -73,6 +74,20 @@ class LaunchFiles(unittest.TestCase):
                                        text=True, capture_output=True, check=False)
                 self.assertEqual(0, check.returncode, check.stderr)
                 self.assertTrue(check.stdout.split(), "starts no node")
+
+    def test_more_has_the_last_word(self):
+        if space("devel") is None:
+            self.skipTest("built without ROS")
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as more:
+            more.write("odom_frame: another\n")
+            more.flush()
+            for node in ("frontend", "backend"):
+                with self.subTest(node):
+                    dump = subprocess.run(
+                        ["roslaunch", "--dump-params", str(ROOT / "launch" / f"{node}.launch"),
+                         f"more:={more.name}"],
+                        env=environment(space("devel")), text=True, capture_output=True, check=True)
+                    self.assertIn(f"/{node}/odom_frame: another", dump.stdout)
 
 
 def required_arguments(path):
