@@ -36,8 +36,8 @@ struct PoseGraphOptions {
   double odometry_translation_floor = 0.005;
   double odometry_rotation_floor = 0.003;
   /// Squared Mahalanobis distance above which a closure is found false after optimisation and
-  /// leaves again, (0, 1e6].
-  double removal_distance = 20.0;
+  /// leaves again, (0, 1e6]: what 1 of 20 honest ones exceeds by chance (6 degrees of freedom).
+  double removal_distance = 12.6;
 
   template <typename Self, typename Visit>
   static void fields(Self& self, Visit&& visit) {
